@@ -23,7 +23,7 @@ exec "$slump" sweep "$study" --out "$out" --shard "\$SLURM_ARRAY_TASK_ID/$tasks"
 JOB
 )
 merge=$(sbatch --parsable --dependency="afterok:$array" --kill-on-invalid-dep=yes \
-    --job-name=slump-merge --output="$out/merge.log" <<JOB
+    --job-name=slump-merge --output="$out/merge.log" "$@" <<JOB
 #!/bin/sh
 exec "$slump" sweep merge "$study" "$out"
 JOB

@@ -40,6 +40,13 @@ impl Simulation {
         columns(py, Table::of_contacts(&moment))
     }
 
+    /// What no grain moves, each as the body that it goes as: place, velocity, force, torque and work, as a table.
+    #[getter]
+    fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let moment = self.run(py).simulation.moment();
+        columns(py, Table::of_walls(&moment))
+    }
+
     /// What is measured of the whole pile: stress, fabric, coordination, solid fraction, forces, clusters.
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -58,7 +65,7 @@ impl Simulation {
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let moment = self.run(py).simulation.moment();
-        rows(py, moment.contacts.iter().map(|contact| contact.force().into()))
+        rows(py, moment.contacts.iter().map(|contact| contact.force.into()))
     }
 
     /// Centres of the grains, m.

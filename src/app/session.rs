@@ -24,7 +24,7 @@ use crate::scene::Scene;
 /// What files begin with.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
-    format: 2,
+    format: 3,
     what: "session",
     of: "",
     form: "a session that the window saved",

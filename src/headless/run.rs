@@ -279,6 +279,12 @@ impl RecordingPlan {
             Some(secs) => Times::Every(secs),
             None => Times::At(picture_times.to_vec()),
         };
+        let time_step_secs = scene.parameters.time_step_secs;
+        if let Some(secs) = self.settings.every_secs.filter(|&secs| secs < time_step_secs) {
+            note_line(format_args!(
+                "data-every is {secs} s, below the time step of {time_step_secs} s: there is a frame a step"
+            ));
+        }
         let formats = formats_of(&self.settings)?;
         let step = simulation.observables().step;
         let recording = match self.claim {

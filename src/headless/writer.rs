@@ -342,7 +342,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
 
 /// Says on stderr which method `auto` took at last.
 fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
-    if scene.solver.method == Method::Auto {
+    if scene.stepper.uses_method() && scene.solver.method == Method::Auto {
         let contacts = simulation.contacts_together();
         let name = simulation.picked_method().name();
         let of = if scene.solver.islands { " of the largest island" } else { "" };

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What users' programs see of a recording: pandas, polars, PyVista and OVITO from PyPI, and ParaView where it
+# What users' programs see of a recording: pandas, polars, PyVista, MDAnalysis, ASE and OVITO from PyPI, and ParaView where it
 # is installed. Records a few small runs, reads them with each, and fails where one sees something else.
 #
 #   tests/clients/try.sh [--fast] [FOLDER]
@@ -30,7 +30,7 @@ if [ -z "${SLUMP:-}" ]; then
 fi
 python=target/clients/bin/python
 [ -x "$python" ] || python3 -m venv target/clients
-packages=(numpy pandas polars pyarrow pyvista)
+packages=(numpy pandas polars pyarrow pyvista MDAnalysis ase)
 [ -n "$fast" ] || packages+=(ovito)
 "$python" -m pip install --quiet --disable-pip-version-check "${packages[@]}"
 
@@ -48,6 +48,7 @@ record walls --scene assets/scenes/hourglass.toml --duration 0.1 --data-every 0.
 for run in pile bonds walls; do
     "$python" "$here/tables.py" "$out/$run"
     "$python" "$here/vtk_files.py" "$out/$run"
+    "$python" "$here/lammps_readers.py" "$out/$run"
     [ -n "$fast" ] || "$python" "$here/ovito_files.py" "$out/$run"
 done
 

@@ -8,7 +8,10 @@ import pyvista
 from recording import OF_FRAME, codes, flags, frames, kinds, table
 
 # Columns that are components of a vector, and the components of that vector.
-VECTORS = {"vx": ("velocity", 0), "vy": ("velocity", 1), "nx": ("normal", 0), "ny": ("normal", 1)}
+VECTORS = {
+    "vx": ("velocity", 0), "vy": ("velocity", 1), "nx": ("normal", 0), "ny": ("normal", 1),
+    "fx": ("force", 0), "fy": ("force", 1),
+}
 POINT = {"x": ("point", 0), "y": ("point", 1)}
 
 

@@ -191,6 +191,7 @@ fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> 
         drive: None,
         surface_speed: *u.choose(&[0.0, 0.0, 2.0])?,
         elapsed_secs: *u.choose(&[0.0, 0.0, 1.0])?,
+        turned: 0.0,
     })
 }
 

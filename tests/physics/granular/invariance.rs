@@ -67,6 +67,7 @@ fn mapped(
     for contact in &mut mapped.contacts {
         contact.normal = vector(contact.normal);
         contact.branch = vector(contact.branch);
+        contact.force = vector(contact.force);
         contact.point = place(contact.point);
     }
     let boundary = |boundary: &Boundary| match *boundary {
@@ -217,6 +218,7 @@ fn by_number(contact: ContactState, [grain, other]: [u32; 2]) -> ContactState {
         other: OtherBody::Grain(grain),
         normal: -contact.normal,
         branch: -contact.branch,
+        force: -contact.force,
         ..contact
     }
 }

@@ -8,6 +8,7 @@ use crate::common::*;
 pub fn disc(position: DVec2, radius: f64) -> GrainState {
     GrainState {
         position,
+        unwrapped: position,
         angle: 0.0,
         velocity: DVec2::ZERO,
         angular_velocity: 0.0,
@@ -61,6 +62,7 @@ fn press_on(
         gap,
         point: grain.position - (grain.radius + 0.5 * gap) * normal,
         branch,
+        force: normal_force * normal + tangential_force * normal.perp(),
         normal_force,
         tangential_force,
         status: if is_open { ContactStatus::Open } else { ContactStatus::Stick },

@@ -33,7 +33,7 @@ fn virial_from_outside(
         if !matches!(contact.other, OtherBody::Grain(_)) {
             let grain = before.grains[contact.grain as usize];
             let touched = grain.position - (grain.radius + contact.gap) * contact.normal;
-            add(-contact.force(), touched);
+            add(-contact.force, touched);
         }
     }
     sums

@@ -59,7 +59,7 @@ fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
         let contact = only_contact(&moment);
         assert_eq!(contact.status, status, "Bond {bond}, {cone:?}: {contact:?}");
         let weight = moment.grains[0].mass * 9.81;
-        let force = contact.force() / weight;
+        let force = contact.force / weight;
         let expected = DVec2::new(-needed.min(bound), angle.cos());
         assert!(force.distance(expected) < 1e-6, "Bond {bond}, {cone:?}: {force} of {expected}");
         assert_eq!(contact.other, OtherBody::Boundary(0));

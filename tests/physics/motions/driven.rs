@@ -201,7 +201,7 @@ fn energy_and_momentum_of_a_driven_wall_balance_in_every_step() {
             let mut push = DVec2::ZERO;
             for contact in &run.moment().contacts {
                 if matches!(contact.other, OtherBody::FixedDisc(_)) {
-                    push -= contact.force();
+                    push -= contact.force;
                 }
             }
             let along = push.dot(DVec2::NEG_Y);

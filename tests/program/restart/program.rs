@@ -275,7 +275,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
 fn a_checkpoint_that_cannot_be_gone_on_with_is_refused_and_overwritten_when_asked() {
     let out = folder();
     let checkpoint = out.path().join("checkpoint.slump");
-    write(&checkpoint, "slump-state 2 0.0.0 1 x\ny");
+    write(&checkpoint, "slump-state 3 0.0.0 1 x\ny");
     let said = refusal(&mut drawn(PILE, out.path()));
     assert!(said.contains("is of version 0.0.0") && said.contains("unless --overwrite"), "{said}");
     let brief = PILE.replace("0.3 ", "0.01 ");

@@ -38,6 +38,9 @@ fn check(scene: &Scene, frames: usize, every: u64) -> Vec<Moment> {
         recording.add(simulation.moment()).expect("a frame");
     }
     recording.finish().expect("a recording");
+    let walls = moments.iter().map(slump::data::Table::of_walls);
+    let names = walls.flat_map(|walls| walls.column("name").map(|names| names.values.len()));
+    assert_eq!(parquet(folder.path(), "walls")["name"].len(), names.sum::<usize>());
     let tables = [
         ("grains", grains(&moments)),
         ("contacts", contacts(&moments)),
@@ -133,7 +136,7 @@ fn parts_end_with_a_frame_and_do_not_hang_on_how_fast_the_disk_was() {
     let [one, other] = &folders;
     let names = parts(one.path(), "grains");
     assert!(names.len() > 2, "several parts: {}", names.len());
-    for table in ["grains", "contacts", "steps", "measures", "histograms"] {
+    for table in ["grains", "contacts", "walls", "steps", "measures", "histograms"] {
         let (one, other) = (parts(one.path(), table), parts(other.path(), table));
         assert_eq!(one.len(), other.len());
         for (one, other) in one.iter().zip(&other) {
@@ -157,7 +160,7 @@ fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
         recording.finish().expect("a recording");
         for name in ["grains", "contacts"] {
             let text = read(folder.path().join(format!("ovito/{name}.dump")));
-            let head = text.lines().position(|line| line == "ITEM: TIME").expect("a frame");
+            let head = text.lines().position(|line| line == "ITEM: TIMESTEP").expect("a frame");
             assert!(head <= 16, "{}: {head} lines in {name}", entry.name);
         }
     }
@@ -196,6 +199,8 @@ fn grain_cells(moment: &Moment, id: usize, grain: &GrainState) -> Row {
         ("radius", grain.radius.into()),
         ("mass", grain.mass.into()),
         ("kind", word(if grain.lost { "lost" } else { "grain" })),
+        ("x_unwrapped", grain.unwrapped.x.into()),
+        ("y_unwrapped", grain.unwrapped.y.into()),
     ]
 }
 
@@ -205,6 +210,7 @@ fn grains(moments: &[Moment]) -> Columns {
         let of_disc = |(id, disc): (usize, &Disc)| {
             let still = GrainState {
                 position: disc.position,
+                unwrapped: disc.position,
                 radius: disc.radius,
                 angle: 0.0,
                 velocity: glam::DVec2::ZERO,
@@ -258,6 +264,8 @@ fn contact_cells(moment: &Moment, contact: &ContactState) -> Row {
         ("bond", bond),
         ("stretch", optional(contact.bond_stretch)),
         ("age", Cell::Whole(contact.age_steps)),
+        ("fx", contact.force.x.into()),
+        ("fy", contact.force.y.into()),
     ]
 }
 

@@ -199,3 +199,13 @@ fn a_step_that_is_not_there_is_told_of_with_those_that_are() {
     let said = refusal(&["--initial-step", "7", "--data", "no"]);
     assert_eq!(said, "initial-step is 7, but must be left out where no initial grains are given");
 }
+
+#[test]
+fn grains_of_a_cell_that_wraps_start_no_pile() {
+    let folder = folder();
+    recorded(folder.path(), FormatName::ALL, &scene("shear-periodic"), 2, 1);
+    for source in sources(folder.path()) {
+        let said = refusal(&["--data", "no", "--initial", text(&source)]);
+        assert!(said.contains("periodic borders, but must be of one without"), "{said}");
+    }
+}

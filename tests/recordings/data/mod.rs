@@ -1,5 +1,6 @@
 //! Recordings: what is in their files, what of them stays when a run ends in any way, and what is read back.
 
+mod balance;
 mod columns;
 mod initial;
 mod options;

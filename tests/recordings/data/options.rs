@@ -236,3 +236,22 @@ fn a_study_says_no_folder_and_no_senseless_time() {
         assert!(output.contains(expected), "{output}");
     }
 }
+
+#[test]
+fn frames_more_often_than_steps_are_told_of() {
+    let folder = folder();
+    let told = succeed(slump("--headless --data-every 3e-4 --data").arg(folder.path()).args(BRIEF));
+    let sentence =
+        "data-every is 0.0003 s, below the time step of 0.001 s: there is a frame a step";
+    assert!(told.contains(sentence), "{told}");
+}
+
+#[test]
+fn a_method_is_told_of_where_one_is_used() {
+    for (stepper, is_told) in [("moreau", true), ("dem", false)] {
+        let folder = folder();
+        let mut command = slump("--headless --solver auto --data");
+        let told = succeed(command.arg(folder.path()).args(BRIEF).args(["--stepper", stepper]));
+        assert_eq!(told.contains("auto took"), is_told, "{stepper}: {told}");
+    }
+}

@@ -156,7 +156,7 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
     let again = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
     again.expect("an empty folder").finish().expect("a recording");
     let mut left = files(folder.path());
-    for table in ["contacts", "grains", "histograms", "measures", "steps"] {
+    for table in ["contacts", "grains", "histograms", "measures", "steps", "walls"] {
         let text = left.remove(&format!("csv/{table}.csv")).expect("a table");
         let rows = text.split(|&byte| byte == b'\n').filter(|line| !line.starts_with(b"#"));
         assert_eq!(rows.count(), 2, "the names of its columns alone");

@@ -27,6 +27,7 @@ fn about() -> RunFacts {
 fn moment(step: u64) -> Moment {
     let grain = |x: f64, y: f64, radius: f64| GrainState {
         position: DVec2::new(x, y),
+        unwrapped: DVec2::new(x, y),
         angle: -0.0,
         velocity: DVec2::new(THIRD, -2e-9),
         angular_velocity: 1e22,
@@ -44,6 +45,7 @@ fn moment(step: u64) -> Moment {
         gap: -5e-324,
         point: DVec2::new(0.5, 0.25),
         branch: -DVec2::X,
+        force: DVec2::new(-THIRD, 1.5),
         normal_force: THIRD,
         tangential_force: -1.5,
         status: ContactStatus::Slip,

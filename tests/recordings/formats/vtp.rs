@@ -9,12 +9,15 @@ const GRAINS: &str = r#"<?xml version="1.0"?>
     <FieldData>
       <DataArray type="Int64" Name="step" NumberOfTuples="1" format="ascii">10</DataArray>
       <DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">1.0</DataArray>
-      <Array type="String" Name="columns" NumberOfTuples="20" format="appended" offset="…
+      <Array type="String" Name="columns" NumberOfTuples="22" format="appended" offset="…
       <Array type="String" Name="about" NumberOfTuples="2" format="appended" offset="…
       <Array type="String" Name="kind_words" NumberOfTuples="3" format="appended" offset="…
       <DataArray type="Int64" Name="pile_grains" NumberOfTuples="1" format="appended" offset="…
 …
       <DataArray type="Float64" Name="pile_strong_share" NumberOfTuples="1" format="appended" offset="…
+      <DataArray type="Int64" Name="wall_id" NumberOfTuples="2" format="appended" offset="…
+…
+      <DataArray type="Float64" Name="wall_work" NumberOfTuples="2" format="appended" offset="…
     </FieldData>
     <Piece NumberOfPoints="4" NumberOfVerts="4" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
       <PointData Scalars="radius">
@@ -25,6 +28,8 @@ const GRAINS: &str = r#"<?xml version="1.0"?>
         <DataArray type="Float64" Name="radius" NumberOfComponents="1" format="appended" offset="…
         <DataArray type="Float64" Name="mass" NumberOfComponents="1" format="appended" offset="…
         <DataArray type="Int32" Name="kind" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Float64" Name="x_unwrapped" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Float64" Name="y_unwrapped" NumberOfComponents="1" format="appended" offset="…
         <DataArray type="Float64" Name="coordination" NumberOfComponents="1" format="appended" offset="…
         <DataArray type="Int8" Name="rattler" NumberOfComponents="1" format="appended" offset="…
 …
@@ -146,16 +151,6 @@ fn contacts_are_lines_from_centre_to_centre_or_to_the_touched_point() {
 }
 
 const DUMPED_GRAINS: &str = "\
-ITEM: UNITS
-si
-ITEM: PARAMETERS
-program: slump; bond: 20 <&> 30
-id: number of the disc; fixed discs follow the grains; type: grain, fixed disc, or a grain that went through a \
-wall or left the world (1 grain, 2 fixed, 3 lost); x [m]: centre; y [m]: centre; radius [m]: radius; vx [m/s]: \
-velocity of the centre; vy [m/s]: velocity of the centre; omegaz [rad/s]: angular velocity, anticlockwise; \
-coordination_number [1]: …
-ITEM: TIME
-0.0
 ITEM: TIMESTEP
 0
 ITEM: NUMBER OF ATOMS
@@ -164,13 +159,14 @@ ITEM: BOX BOUNDS ss ss ss
 -0.75 1.3333333333333333
 -1.75 0.75
 -0.75 0.75
-ITEM: ATOMS id type element x y radius vx vy omegaz coordination_number angle mass …
-0 1 grain 0.0 0.25 0.5 0.3333333333333333 -2e-9 1e22 2.0 -0.0 0.125 …
-1 1 grain 1.0 0.25 0.3333333333333333 0.3333333333333333 -2e-9 1e22 2.0 -0.0 0.125 …
-2 3 lost -1000000.0 0.0 0.5 0.3333333333333333 -2e-9 1e22 0.0 -0.0 0.125 …
-3 2 fixed 0.0 -1.0 0.75 0.0 0.0 0.0 NaN 0.0 NaN …
+ITEM: ATOMS id type element x y z radius vx vy vz omegaz coordination_number angle mass …
+0 1 H 0.0 0.25 0.0 0.5 0.3333333333333333 -2e-9 0.0 1e22 2.0 -0.0 0.125 …
+1 1 H 1.0 0.25 0.0 0.3333333333333333 0.3333333333333333 -2e-9 0.0 1e22 2.0 -0.0 0.125 …
+2 3 Li -1000000.0 0.0 0.0 0.5 0.3333333333333333 -2e-9 0.0 1e22 0.0 -0.0 0.125 …
+3 2 He 0.0 -1.0 0.0 0.75 0.0 0.0 0.0 0.0 NaN 0.0 NaN …
 ";
-const SECOND_HEAD: &str = "ITEM: TIME\n1.0\nITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n4\n";
+/// MDAnalysis takes the lines of a frame by their number: eight, the names of columns, and a line a disc.
+const SECOND_HEAD: &str = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n4\n";
 
 const DUMPED_CONTACTS: &str = "\
 ITEM: TIME
@@ -183,9 +179,9 @@ ITEM: BOX BOUNDS ss ss ss
 -0.75 1.3333333333333333
 -1.75 0.75
 -0.75 0.75
-ITEM: BONDS batom1 batom2 kind_j x y nx ny gap normal_force tangential_force status bond stretch age
-0 1 0 0.5 0.25 -1.0 -0.0 -5e-324 0.3333333333333333 -1.5 2 -1 NaN 0
-0 3 1 0.5 0.25 0.0 1.0 -5e-324 0.3333333333333333 -1.5 2 -1 NaN 0
+ITEM: BONDS batom1 batom2 kind_j x y nx ny gap normal_force tangential_force status bond stretch age fx fy
+0 1 0 0.5 0.25 -1.0 -0.0 -5e-324 0.3333333333333333 -1.5 2 -1 NaN 0 -0.3333333333333333 1.5
+0 3 1 0.5 0.25 0.0 1.0 -5e-324 0.3333333333333333 -1.5 2 -1 NaN 0 -0.3333333333333333 1.5
 ";
 
 #[test]
@@ -196,14 +192,23 @@ fn dumps_say_this() {
     let grains = read("grains.dump");
     let rest = after(&grains, DUMPED_GRAINS);
     assert!(rest.starts_with(SECOND_HEAD), "{rest}");
-    assert_eq!(rest.lines().count(), 15);
+    assert_eq!(rest.lines().count(), 9 + 4);
     let contacts = read("contacts.dump");
     let words =
         "status: what the laws of contact and friction make of it (0 open, 1 stick, 2 slip)";
     assert!(contacts.contains(&format!("; {words}; ")), "{contacts}");
     after(
         &contacts,
-        &format!("ITEM: UNITS\nsi\nITEM: PARAMETERS\nprogram: slump; …\n…\n{DUMPED_CONTACTS}"),
+        &format!(
+            "ITEM: UNITS\nsi\nITEM: PARAMETERS\nprogram: slump; …\n…\n\
+             grains: id: number of the disc; fixed discs follow the grains; type: grain, fixed disc, …\n\
+             walls: id: number of the wall; …\n{DUMPED_CONTACTS}"
+        ),
+    );
+    let walls = read("walls.dump");
+    assert!(
+        walls.starts_with("ITEM: TIME\n0.0\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n2\n"),
+        "{walls}"
     );
 }
 

@@ -10,6 +10,7 @@ use super::approach::{LookAhead, approach};
 use super::candidates::Candidates;
 use super::numbering::{Numbering, Other};
 use super::range::Bond;
+use super::transmitted::{StepSums, Transmitted};
 use crate::threads;
 use crate::world::World;
 
@@ -62,6 +63,15 @@ pub struct ContactMemory {
     pub stiffness: [f64; 2],
 }
 
+/// What a stepping scheme reads and changes of contacts, a column each.
+pub(crate) struct ContactParts<'a> {
+    pub contacts: &'a [Contact],
+    pub found_in: &'a [u64],
+    pub impulses: &'a mut [Impulse],
+    pub memories: &'a mut [ContactMemory],
+    pub sums: &'a mut StepSums,
+}
+
 /// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -77,12 +87,71 @@ pub struct ContactList {
     looks_ahead: bool,
     /// The step that contacts are found in from now on.
     step: u64,
+    /// What pairs transmit in a step that is taken in pieces; nothing where it is taken as a whole.
+    sums: StepSums,
+    /// True where the present step is summed up.
+    #[serde(skip)]
+    is_summed_up: bool,
 }
 
 impl ContactList {
     /// Says which step contacts are found in from now on.
     pub(crate) fn begin_step(&mut self, step: u64) {
         self.step = step;
+        self.sums.clear();
+        self.is_summed_up = false;
+    }
+
+    /// Says that the step is taken in pieces.
+    pub(crate) fn begin_sums(&mut self) {
+        self.is_summed_up = true;
+    }
+
+    /// Counts the impulses of a piece of the step.
+    pub(crate) fn sum_up(&mut self) {
+        if self.is_summed_up {
+            for index in 0..self.now.contacts.len() {
+                self.add_to_sums(index, self.now.contacts[index].normal, self.now.impulses[index]);
+            }
+        }
+    }
+
+    /// Counts an impulse of a contact along a normal, which may have turned since the contact was found.
+    pub(crate) fn add_to_sums(&mut self, index: usize, normal: DVec2, impulse: Impulse) {
+        let ContactColumns { contacts, found_in, .. } = &self.now;
+        self.sums.add(Transmitted::of(contacts[index], found_in[index], (normal, impulse)));
+    }
+
+    /// What the pair of a contact has transmitted in a step that is summed up.
+    pub(crate) fn sum_of(&self, contact: &Contact) -> Impulse {
+        self.sums.of(contact.pair())
+    }
+
+    /// True where what is transmitted is that of a whole step, and not of its last piece.
+    pub(crate) fn has_sums(&self) -> bool {
+        !self.sums.pairs.is_empty()
+    }
+
+    /// What the last step's pairs transmitted, sorted, each with its place among the contacts if it still is one.
+    pub(crate) fn transmitted(&self) -> Vec<(Transmitted, Option<usize>)> {
+        let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
+        let whole = !self.has_sums();
+        let of_contact = |(index, (contact, impulse)): (usize, (&Contact, &Impulse))| {
+            let impulse = if whole { *impulse } else { Impulse::default() };
+            let along = (contact.normal, impulse);
+            (Transmitted::of(*contact, found_in[index], along), Some(index))
+        };
+        let of_contacts = contacts.iter().zip(impulses).enumerate().map(of_contact);
+        let sums = self.sums.pairs.iter().map(|pair| (*pair, None));
+        let mut all: Vec<_> = sums.chain(of_contacts).collect();
+        // The sort is stable: what is summed up comes first.
+        all.sort_by_key(|(pair, _)| pair.contact.pair());
+        all.dedup_by(|second, first| {
+            let is_same = second.0.contact.pair() == first.0.contact.pair();
+            first.1 = if is_same { second.1 } else { first.1 };
+            is_same
+        });
+        all
     }
 
     /// How many steps ago each pair was found to touch, or to be bonded, that has done so ever since, one
@@ -118,10 +187,10 @@ impl ContactList {
         &self.now.memories
     }
 
-    /// The contacts, with impulses and memories to be changed, one a contact.
-    pub(crate) fn parts_mut(&mut self) -> (&[Contact], &mut [Impulse], &mut [ContactMemory]) {
-        let ContactColumns { contacts, impulses, memories, .. } = &mut self.now;
-        (contacts, impulses, memories)
+    /// The contacts and the steps that they were found in, with impulses, memories and sums to be changed.
+    pub(crate) fn parts_mut(&mut self) -> ContactParts<'_> {
+        let ContactColumns { contacts, impulses, memories, found_in, .. } = &mut self.now;
+        ContactParts { contacts, found_in, impulses, memories, sums: &mut self.sums }
     }
 
     /// The contacts with their bonds, one a contact; they mean something under the law `range` alone.
@@ -144,9 +213,10 @@ impl ContactList {
         !self.looks_ahead || self.now.bonds[index].alive
     }
 
-    /// Empties the memories: what comes next was not prepared by the scheme that filled them.
+    /// Empties the memories and sums: what comes next was not prepared by the scheme that filled them.
     pub(crate) fn forget(&mut self) {
         self.now.memories.fill(ContactMemory::default());
+        self.sums.clear();
     }
 
     /// Multiplies all impulses, so that a change of Δt leaves the forces as they were.
@@ -169,15 +239,22 @@ impl ContactList {
         bonds.retain(|_| of_bonds.next() == Some(true));
         found_in.retain(|_| of_steps.next() == Some(true));
         contacts.retain(stays);
-        for contact in contacts {
+        self.sums.pairs.retain(|pair| stays(&pair.contact));
+        for contact in self.all_mut() {
             contact.grain -= u32::from(contact.grain > body);
             contact.other -= u32::from(contact.other > body);
         }
     }
 
+    /// The contacts, and those that the step has had.
+    fn all_mut(&mut self) -> impl Iterator<Item = &mut Contact> {
+        let earlier = self.sums.pairs.iter_mut().map(|pair| &mut pair.contact);
+        self.now.contacts.iter_mut().chain(earlier)
+    }
+
     /// Makes room among the bodies for one more of that number, which touches none yet.
     pub(crate) fn insert_body(&mut self, body: u32) {
-        for contact in &mut self.now.contacts {
+        for contact in self.all_mut() {
             contact.grain += u32::from(contact.grain >= body);
             contact.other += u32::from(contact.other >= body);
         }
@@ -193,7 +270,7 @@ impl ContactList {
             (contact.grain as usize) < grains && (contact.other as usize) < bodies
         };
         lengths == [contacts.len(); 4]
-            && contacts.iter().all(exists)
+            && contacts.iter().chain(self.sums.pairs.iter().map(|pair| &pair.contact)).all(exists)
             && found_in.iter().all(is_past)
     }
 
@@ -246,7 +323,7 @@ impl ContactList {
         keep: impl Fn(&Contact, &mut Bond) -> bool + Sync,
     ) {
         std::mem::swap(&mut self.now, &mut self.before);
-        let Self { now, before, parts, looks_ahead, step } = self;
+        let Self { now, before, parts, looks_ahead, step, .. } = self;
         let search =
             ContactSearch { world, candidates, before, looks_ahead: *looks_ahead, step: *step };
         let grains = world.grains.len();

@@ -11,12 +11,14 @@ pub(crate) mod law;
 mod numbering;
 pub mod range;
 mod too_close;
+mod transmitted;
 
 pub(crate) use approach::{LookAhead, RelativeMotion};
 pub use broad_phase::BroadPhase;
 #[doc(hidden)]
 pub use broad_phase::Grid;
 pub use candidates::{Candidates, Reach};
+pub(crate) use contact_list::ContactParts;
 pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
 pub(crate) use features::Feature;
 pub(crate) use lanes::Lanes;
@@ -25,3 +27,4 @@ pub(crate) use lanes::levels;
 pub use law::ContactLaw;
 pub use numbering::{JoinedGrains, Numbering, Other, most_contacts_joined};
 pub(crate) use too_close::check_distances;
+pub(crate) use transmitted::Transmitted;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::contact::law::cohesion_force;
-use crate::contact::{Contact, Numbering, Other};
+use crate::contact::range::{Bond, TOUCH_IN_DIAMETERS};
+use crate::contact::{Contact, Impulse, Numbering, Other, Transmitted};
 use crate::setting::words;
 use crate::sim::observables::Observables;
 use crate::sim::settings::Settings;
@@ -41,6 +42,8 @@ pub struct Moment {
 pub struct GrainState {
     /// Centre, m.
     pub position: DVec2,
+    /// Where it was at the start, and all its ways since, m: borders that wrap have no part in it.
+    pub unwrapped: DVec2,
     /// Angle turned since the start, rad.
     pub angle: f64,
     /// Velocity of the centre, m/s.
@@ -59,8 +62,9 @@ pub struct GrainState {
     pub lost: bool,
 }
 
-/// One contact of the last step. Forces are the means over that step, normal and gap those that the step began
-/// with, and both go with the positions before it: grains have moved by Δt·v since.
+/// A pair that touches since the last step, or transmitted anything in it. Forces are the means over that step, all its
+/// shocks and pieces included. Normal and gap are those that the step began with, or the piece of it in which the pair was
+/// found; they go with the positions before it: grains have moved by Δt·v since.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
     /// Grain i.
@@ -75,9 +79,11 @@ pub struct ContactState {
     pub point: DVec2,
     /// From the centre of j, or from the touched point of a boundary, to the centre of i, m.
     pub branch: DVec2,
-    /// N, newton, along n on grain i; negative pulls.
+    /// On grain i, newton.
+    pub force: DVec2,
+    /// N, newton, along n on grain i; negative pulls. Where n turns within the step, the mean of what is along it.
     pub normal_force: f64,
-    /// T, newton, along (−n_y, n_x) on grain i.
+    /// T, newton, along (−n_y, n_x) on grain i, likewise: times its radius it is the torque on each grain.
     pub tangential_force: f64,
     /// What the friction law makes of it.
     pub status: ContactStatus,
@@ -107,30 +113,31 @@ words! {
     }
 }
 
-impl ContactState {
-    /// The force on grain i, newton.
-    pub fn force(&self) -> DVec2 {
-        self.normal_force * self.normal + self.tangential_force * self.normal.perp()
-    }
-}
-
 impl Simulation {
     /// This moment in full.
     pub fn moment(&self) -> Moment {
         let State { world, candidates, contacts, .. } = &self.state;
         let laws = Laws::of(self);
-        let per_time_step = 1.0 / self.state.time_step_of_impulses_secs;
+        let per_time_step = match contacts.has_sums() {
+            true => 1.0 / self.observables().time_step_secs,
+            false => 1.0 / self.state.time_step_of_impulses_secs,
+        };
         let numbering = Numbering::of(world);
-        let ages = contacts.ages();
-        let rows = contacts.contacts().iter().zip(contacts.impulses()).zip(contacts.bonds());
-        let in_touch = |&(index, _): &(usize, _)| contacts.is_in_touch(index);
-        let states = rows.zip(ages).enumerate().filter(in_touch);
-        let states = states.map(|(_, (((contact, impulse), bond), age_steps))| {
+        let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
+        let states = contacts.transmitted().into_iter().filter_map(|(transmitted, index)| {
+            let Transmitted { contact, found_in, sums, vector } = transmitted;
+            let bond = index.map_or_else(Bond::default, |index| contacts.bonds()[index]);
+            let is_in_touch = index.is_some_and(|index| contacts.is_in_touch(index));
+            // A bond that has no strength holds nothing that is open.
+            let is_held = is_in_touch && (contact.gap <= touch || laws.has_strength());
+            if !is_held && sums == Impulse::default() {
+                return None;
+            }
             let other = numbering.other(contact.other);
-            let normal_force = impulse.normal * per_time_step;
-            let tangential_force = impulse.tangential * per_time_step;
+            let normal_force = sums.normal * per_time_step;
+            let tangential_force = sums.tangential * per_time_step;
             let alive = laws.has_bonds && bond.alive;
-            let status = laws.status(contact, other, alive, [normal_force, tangential_force]);
+            let status = laws.status(&contact, other, alive, [normal_force, tangential_force]);
             let grain = contact.grain as usize;
             let (centre, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
             // A boundary is touched in a point.
@@ -143,23 +150,25 @@ impl Simulation {
                     (OtherBody::Boundary(candidates.boundary_of(feature) as u32), 0.0)
                 }
             };
-            ContactState {
+            Some(ContactState {
                 grain: contact.grain,
                 other,
                 normal: contact.normal,
                 gap: contact.gap,
                 point: centre - (radius + 0.5 * contact.gap) * contact.normal,
                 branch: (radius + contact.gap + radius_of_other) * contact.normal,
+                force: per_time_step * vector,
                 normal_force,
                 tangential_force,
                 status,
                 bond_stretch: alive.then_some(bond.stretch),
-                age_steps,
-            }
+                age_steps: self.observables().step.saturating_sub(found_in),
+            })
         });
         let grains = &world.grains;
         let grain_state = |index: usize| GrainState {
             position: grains.positions[index],
+            unwrapped: grains.positions[index] + grains.brought_back[index],
             angle: grains.angles[index],
             velocity: grains.velocities[index],
             angular_velocity: grains.angular_velocities[index],
@@ -200,6 +209,11 @@ impl<'a> Laws<'a> {
             has_bonds: settings.stepper == Stepper::Range,
             friction: if physics.friction { parameters.friction } else { 0.0 },
         }
+    }
+
+    /// True where bonds pull, if the law has any.
+    fn has_strength(&self) -> bool {
+        !self.has_bonds || (self.has_cohesion && self.parameters.bond > 0.0)
     }
 
     /// Of a contact with the forces N and T.

@@ -166,6 +166,7 @@ impl Simulation {
         let mut result = if pieces == 1 {
             advance.advance(stage, settings)
         } else {
+            stage.state.contacts.begin_sums();
             stage.in_pieces(pieces, settings, StepResult::nothing_yet(), |stage, piece, result| {
                 result.add(advance.advance(stage, piece));
             })
@@ -302,6 +303,12 @@ impl Simulation {
     /// What went wrong so far, one alarm of a kind.
     pub fn alarms(&self) -> &[Alarm] {
         &self.watch.alarms
+    }
+
+    /// Forgets what went wrong, for a run that goes on in another way: each kind of alarm is raised once. Grains that are
+    /// lost stay so.
+    pub fn forget_alarms(&mut self) {
+        self.watch.alarms.retain(|alarm| alarm.kind == AlarmKind::GrainLost);
     }
 
     /// The step whose end is nearest to a simulated time (s), as long as Δt stays as it is.

@@ -59,6 +59,9 @@ pub struct MotionView {
     pub velocity: DVec2,
     /// rad/s, positive anticlockwise.
     pub angular_velocity: f64,
+    /// By how much it has turned since the start, rad.
+    #[serde(default)]
+    pub turned: f64,
     /// What it turns round, m.
     pub pivot: DVec2,
     /// Of a surface that goes round it, m/s, along the outward normal turned by +90°.
@@ -86,6 +89,7 @@ impl MotionView {
                 fixed_discs: motion.fixed_discs.clone(),
                 velocity: course.velocity + driven,
                 angular_velocity: course.spin,
+                turned: motion.turned,
                 pivot: course.pivot,
                 surface_speed: motion.surface_speed,
                 is_driven: drive.is_some(),

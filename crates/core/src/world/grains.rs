@@ -78,6 +78,9 @@ pub struct Grains {
     pub feels_gravity: Vec<bool>,
     /// Greys for the paper's pictures.
     pub tones: Vec<u8>,
+    /// By how much borders that wrap have brought each back since the start, m: with it a centre is where its ways have
+    /// led it.
+    pub brought_back: Vec<DVec2>,
 }
 
 impl Grains {
@@ -98,6 +101,7 @@ impl Grains {
         self.masses.push(areal_density * std::f64::consts::PI * grain.radius * grain.radius);
         self.feels_gravity.push(grain.feels_gravity);
         self.tones.push(grain.tone);
+        self.brought_back.push(DVec2::ZERO);
     }
 
     pub(crate) fn validate(&self) -> Result<()> {
@@ -111,6 +115,7 @@ impl Grains {
             ("masses", self.masses.len()),
             ("feels_gravity", self.feels_gravity.len()),
             ("tones", self.tones.len()),
+            ("brought_back", self.brought_back.len()),
         ];
         match lengths.into_iter().find(|&(_, length)| length != count) {
             None => Ok(()),
@@ -131,6 +136,7 @@ impl Grains {
         self.masses.remove(index);
         self.feels_gravity.remove(index);
         self.tones.remove(index);
+        self.brought_back.remove(index);
     }
 
     /// Number of discs.

@@ -33,6 +33,9 @@ pub struct Motion {
     /// How long they have been going, s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub elapsed_secs: f64,
+    /// By how much they have turned since then, rad, positive anticlockwise.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub turned: f64,
 }
 
 /// Where bodies go over time, from the places at which they are listed.
@@ -139,6 +142,7 @@ impl Motion {
     /// Takes note that they have gone on for `secs`, by `carry`.
     pub(crate) fn advance(&mut self, secs: f64, carry: &Carry) {
         self.elapsed_secs += secs;
+        self.turned += carry.angle;
         let (left, gone) = match &mut self.course {
             Some(MotionCourse::Straight { travel: Some(travel), .. }) => {
                 (travel, carry.by.length())

@@ -84,6 +84,7 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
         check(value >= 0.0 && value.is_finite(), name, &value, "a finite number ≥ 0")
     };
     finite("surface_speed", motion.surface_speed)?;
+    finite("turned", motion.turned)?;
     least("elapsed_secs", motion.elapsed_secs)?;
     let Some(course) = &motion.course else { return Ok(()) };
     if let Some(pivot) = course.pivot() {

@@ -245,9 +245,14 @@ impl World {
                 velocity.x += change;
             }
         }
-        let fixed = self.fixed_discs.iter_mut().map(|disc| &mut disc.position);
-        for place in self.grains.positions.iter_mut().chain(fixed) {
-            *place = periodic.wrap(*place);
+        let grains = &mut self.grains;
+        for (place, brought_back) in grains.positions.iter_mut().zip(&mut grains.brought_back) {
+            let wrapped = periodic.wrap(*place);
+            *brought_back += *place - wrapped;
+            *place = wrapped;
+        }
+        for disc in &mut self.fixed_discs {
+            disc.position = periodic.wrap(disc.position);
         }
         work
     }

@@ -124,6 +124,14 @@ pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
     facts.extend(
         values_of(scene, scene)?.iter().map(|(name, value)| (name.clone(), one_line(value))),
     );
+    let weightless = scene.grains.iter().filter(|grain| !grain.feels_gravity).count();
+    if weightless > 0 {
+        let said = format!(
+            "{weightless} of {} grains: gravity does not act on them, and is the scale of Bond alone",
+            scene.grains.len()
+        );
+        facts.push(("weightless".to_owned(), said));
+    }
     Ok(RunFacts { facts })
 }
 

@@ -8,7 +8,7 @@ use serde::de::MapAccess;
 
 use super::scene_file::{read_unsettled, unsettled};
 use super::{SavedState, parser_of};
-use crate::data::{RecordedGrains, read_grains};
+use crate::data::{RecordedGrains, check_not_periodic, read_grains};
 use crate::error::{Error, Result};
 use crate::scene::{
     Deposition, NewPile, Preset, Scene, Settling, built_in, cradle_from, pile_of, put_on_base,
@@ -263,6 +263,7 @@ impl Config {
                 (self.scene_of_state(path)?, None)
             } else if let Some(path) = initial {
                 self.check_pile_alone("initial grains")?;
+                check_not_periodic(path)?;
                 (self.pile_of_recorded(read_grains(path, *initial_step)?)?, None)
             } else if name.ends_with(".toml") {
                 read_unsettled(name.as_ref())?
@@ -413,6 +414,9 @@ impl Config {
         }
         let mut scene = state.scene.clone();
         self.change_scene(&mut scene)?;
+        if scene.settings() != *state.simulation.settings() {
+            state.simulation.forget_alarms();
+        }
         state.simulation.change(scene.settings())?;
         state.scene = scene;
         Ok(())

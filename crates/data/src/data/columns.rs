@@ -1,20 +1,19 @@
 //! The tables of a recording: which columns they have, and what these hold.
 
-use glam::DVec2;
-
 use super::table::{Table, place_of};
+use super::walls::fixed_discs;
 use crate::column_spec::CellValue::{Count, Flag, Name, Number, SomeNumber, Word};
 use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{
     ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Stepper,
 };
-use crate::world::Disc;
 
 /// The tables that formats write for each frame, without a row.
-pub(super) fn empty_tables_of_frames() -> [Table; 4] {
+pub(super) fn empty_tables_of_frames() -> [Table; 5] {
     let histograms = histogram_table(&Observables::default(), &[]);
-    [empty_grains(), Table::new(CONTACTS, CONTACT_COLUMNS, &[], &[]), measures(None), histograms]
+    let contacts = Table::new(CONTACTS, CONTACT_COLUMNS, &[], &[]);
+    [empty_grains(), contacts, Table::no_walls(), measures(None), histograms]
 }
 
 /// All tables that formats write, without a row.
@@ -67,6 +66,9 @@ struct GrainTableRow {
     state: GrainState,
 }
 
+const UNWRAPPED: &str =
+    "centre of a grain at the start, and all its ways since: borders that wrap have no part in it";
+
 const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
@@ -95,6 +97,8 @@ const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
         "grain, fixed disc, or a grain that went through a wall or left the world",
         Word(KINDS, |row| row.kind as u32),
     ),
+    column("x_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.x)),
+    column("y_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.y)),
 ];
 
 pub(super) fn empty_grains() -> Table {
@@ -104,7 +108,7 @@ pub(super) fn empty_grains() -> Table {
 pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
     let moving = moment.grains.iter().map(|state| (if state.lost { LOST } else { GRAIN }, *state));
-    let fixed = moment.surroundings.fixed_discs.iter().map(|disc| (FIXED, at_rest(disc)));
+    let fixed = fixed_discs(&moment.surroundings).map(|state| (FIXED, state));
     let rows = moving.chain(fixed).zip(0..);
     let rows: Vec<GrainTableRow> = rows
         .map(|((kind, state), id)| GrainTableRow { step, time_secs, id, kind, state })
@@ -121,20 +125,6 @@ fn with_measures(mut table: Table, measures: &[GrainMeasures]) -> Table {
         column
     }));
     table
-}
-
-fn at_rest(disc: &Disc) -> GrainState {
-    GrainState {
-        position: disc.position,
-        angle: 0.0,
-        velocity: DVec2::ZERO,
-        angular_velocity: 0.0,
-        radius: disc.radius,
-        mass: f64::INFINITY,
-        feels_gravity: false,
-        tone: 0,
-        lost: false,
-    }
 }
 
 const CONTACTS: &str = "contacts";
@@ -180,13 +170,13 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     column(
         "normal_force",
         "N",
-        "on i along the normal, mean over the step; negative pulls",
+        "on i along the normal as it was, mean over the step with its shocks; negative pulls",
         Number(|row| row.state.normal_force),
     ),
     column(
         "tangential_force",
         "N",
-        "on i along (-ny, nx), mean over the step",
+        "on i along (-ny, nx), likewise; times -radius the torque on either grain",
         Number(|row| row.state.tangential_force),
     ),
     column(
@@ -212,6 +202,18 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
         SomeNumber(|row| row.state.bond_stretch),
     ),
     column("age", "", "steps since the pair was found to touch", Count(|row| row.state.age_steps)),
+    column(
+        "fx",
+        "N",
+        "force on i, mean over the step with its shocks",
+        Number(|row| row.state.force.x),
+    ),
+    column(
+        "fy",
+        "N",
+        "force on i, mean over the step with its shocks",
+        Number(|row| row.state.force.y),
+    ),
 ];
 
 pub(super) fn contacts(moment: &Moment) -> Table {

@@ -33,6 +33,8 @@ pub struct Frame {
     pub grains: Table,
     /// A row a contact.
     pub contacts: Table,
+    /// A row a wall.
+    pub walls: Table,
     /// One row, of the whole pile.
     pub measures: Table,
     /// A row a bin of each histogram.
@@ -48,14 +50,15 @@ impl Frame {
             number,
             grains: columns::grains(&moment, &grains),
             contacts: Table::of_contacts(&moment),
+            walls: Table::of_walls(&moment),
             measures: columns::measures(Some((now, &pile))),
             histograms: columns::histogram_table(now, &histograms),
             moment,
         }
     }
 
-    pub(super) fn tables(&self) -> [&Table; 4] {
-        [&self.grains, &self.contacts, &self.measures, &self.histograms]
+    pub(super) fn tables(&self) -> [&Table; 5] {
+        [&self.grains, &self.contacts, &self.walls, &self.measures, &self.histograms]
     }
 }
 

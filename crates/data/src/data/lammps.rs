@@ -1,10 +1,12 @@
 //! For OVITO and others that read what LAMMPS writes: `ovito/grains.dump`, a text dump with a row a grain,
-//! and `ovito/contacts.dump`, a `dump local` with a row a contact between two discs, as bonds. A contact
-//! with a boundary is left out: OVITO draws bonds between particles alone, and refuses the frame else.
+//! `ovito/contacts.dump`, a `dump local` with a row a contact between two discs, as bonds, and `ovito/walls.dump`, one
+//! with a row a wall. A contact with a boundary is left out: OVITO draws bonds between particles alone, and refuses the
+//! frame else.
 //!
-//! Dumps have the columns that OVITO knows under the names that it knows them by. There is no z: without it OVITO
-//! takes the world for the plane that it is. Numbers are written in the shortest form that reads back as the same
-//! number.
+//! Dumps have the columns that readers know under the names that they know them by. MDAnalysis takes the lines of a frame
+//! of grains by their number, and neither it nor ASE takes grains without z or with elements that there are not. So
+//! grains have nothing but what every dump has, and what else is to be known stands ahead of the contacts, with the
+//! time of each frame. Numbers are written in the shortest form that reads back as the same number.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -21,14 +23,14 @@ use crate::output::GrowingFile;
 use crate::sim::{Moment, OtherBody};
 
 pub(super) const FOLDER: &str = "ovito";
-/// Those of grains and contacts.
-pub(super) const FILES: [&str; 2] = ["grains.dump", "contacts.dump"];
+/// Those of grains, contacts and walls.
+pub(super) const FILES: [&str; 3] = ["grains.dump", "contacts.dump", "walls.dump"];
 
 /// Begins what is no frame yet. No reader knows such an item, and each skips it at the end of a file.
 const DRAFT: &str = "ITEM: DRAFT";
 /// What a line begins with that belongs to a draft, also to one of whose word a kill has left a part.
 const OF_A_DRAFT: &str = "ITEM: D";
-/// How the head of a frame begins, …
+/// What says the time of a frame, ahead of its step, but of grains …
 const TIME: &str = "ITEM: TIME";
 /// … and what says its step.
 const STEP: &str = "ITEM: TIMESTEP";
@@ -50,8 +52,12 @@ const GRAIN_COLUMNS: [(&str, &str); 10] = [
 const CONTACT_COLUMNS: [(&str, &str); 2] = [("batom1", "id_i"), ("batom2", "id_j")];
 /// What stands at the head of a frame, or says nothing of contacts between discs.
 const LEFT_OUT: [&str; 3] = ["step", "time", "name_j"];
-/// The column that has words; all others have numbers for them.
+/// The column of grains that has words, and those words, of grains, fixed discs and lost grains: readers know the
+/// elements of chemistry alone. All others have numbers for words.
 const IN_WORDS: &str = "element";
+const ELEMENTS: [&str; 3] = ["H", "He", "Li"];
+/// What dumps call grains.
+const ATOMS: &str = "ATOMS";
 /// LAMMPS counts types from here.
 const FIRST_TYPE: u32 = 1;
 
@@ -59,6 +65,7 @@ pub(super) struct Lammps {
     facts: RunFacts,
     grains: GrowingDump,
     contacts: GrowingDump,
+    walls: GrowingDump,
 }
 
 /// A dump that grows.
@@ -72,26 +79,28 @@ impl Lammps {
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
-        let [grains, contacts] =
+        let [grains, contacts, walls] =
             FILES.map(|name| GrowingDump { path: folder.join(name), file: None });
-        Ok(Self { facts: facts.clone(), grains, contacts })
+        Ok(Self { facts: facts.clone(), grains, contacts, walls })
     }
 }
 
 impl Format for Lammps {
     fn add(&mut self, frame: &Frame) -> Result<()> {
-        self.grains.add(&grains(frame, &self.facts))?;
-        self.contacts.add(&contacts(frame, &self.facts))
+        self.grains.add(&grains(frame))?;
+        self.contacts.add(&contacts(frame, &self.facts))?;
+        self.walls.add(&walls(frame))
     }
 
     fn finish(&mut self) -> Result<()> {
-        let files = [&self.grains.file, &self.contacts.file];
+        let files = [&self.grains.file, &self.contacts.file, &self.walls.file];
         files.into_iter().flatten().try_for_each(GrowingFile::sync)
     }
 
     fn roll_back(&mut self, _step: u64, last_frame: Option<u64>) -> Result<()> {
         self.grains.roll_back(last_frame)?;
-        self.contacts.roll_back(last_frame)
+        self.contacts.roll_back(last_frame)?;
+        self.walls.roll_back(last_frame)
     }
 }
 
@@ -129,7 +138,7 @@ fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     let mut lines = BufReader::new(file);
     let mut line = String::new();
     let (mut line_start, mut frame_start) = (0, None);
-    let mut says_step = false;
+    let (mut says_step, mut has_time) = (false, false);
     loop {
         line.clear();
         let length = lines.read_line(&mut line).map_err(|error| Error::file(path, error))?;
@@ -147,7 +156,8 @@ fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
             }
         }
         says_step = text == STEP;
-        if text == TIME {
+        has_time |= text == TIME;
+        if text == TIME || (says_step && !has_time) {
             // What stands ahead of the first frame goes with it.
             frame_start = Some(frame_start.map_or(0, |_| line_start));
         }
@@ -166,9 +176,15 @@ struct FrameText {
 }
 
 /// A row a grain, then a row a fixed disc.
-fn grains(frame: &Frame, facts: &RunFacts) -> FrameText {
+fn grains(frame: &Frame) -> FrameText {
     let rows = 0..frame.grains.len();
-    dump("ATOMS", frame, facts, (&frame.grains, &GRAIN_COLUMNS), rows)
+    dump(ATOMS, frame, (&frame.grains, &GRAIN_COLUMNS), rows)
+}
+
+/// A row a wall.
+fn walls(frame: &Frame) -> FrameText {
+    let rows = 0..frame.walls.len();
+    dump("ENTRIES", frame, (&frame.walls, &[]), rows)
 }
 
 /// A row a contact between two discs.
@@ -177,19 +193,25 @@ fn contacts(frame: &Frame, facts: &RunFacts) -> FrameText {
     let between_discs =
         contacts.filter(|(_, contact)| !matches!(contact.other, OtherBody::Boundary(_)));
     let rows: Vec<usize> = between_discs.map(|(row, _)| row).collect();
-    dump("BONDS", frame, facts, (&frame.contacts, &CONTACT_COLUMNS), rows.into_iter())
+    let mut text = dump("BONDS", frame, (&frame.contacts, &CONTACT_COLUMNS), rows.into_iter());
+    text.front = front(facts, frame);
+    text
 }
 
 fn dump(
     label: &str,
     frame: &Frame,
-    facts: &RunFacts,
     (table, first): (&Table, &[(&'static str, &str)]),
     rows: impl ExactSizeIterator<Item = usize>,
 ) -> FrameText {
     let columns = columns(table, first);
     let mut head = head(&frame.moment, label, rows.len());
-    columns.iter().for_each(|(name, _)| head.extend([" ", name]));
+    for (name, _) in &columns {
+        head.extend([" ", name]);
+        if let Some(along_z) = along_z(label, name) {
+            head.extend([" ", along_z]);
+        }
+    }
     head.push('\n');
     let mut text = String::new();
     for row in rows {
@@ -198,10 +220,22 @@ fn dump(
                 text.push(' ');
             }
             push(&mut text, name, &column.values, row);
+            if along_z(label, name).is_some() {
+                text.push_str(" 0.0");
+            }
         }
         text.push('\n');
     }
-    FrameText { front: front(facts, &columns), head, rows: text }
+    FrameText { front: String::new(), head, rows: text }
+}
+
+/// What follows a component along y: readers ask for vectors of grains in space.
+fn along_z(label: &str, name: &str) -> Option<&'static str> {
+    match name {
+        "y" if label == ATOMS => Some("z"),
+        "vy" if label == ATOMS => Some("vz"),
+        _ => None,
+    }
 }
 
 fn columns<'a>(
@@ -224,8 +258,8 @@ fn push(text: &mut String, name: &str, values: &Values, row: usize) {
         }
         Values::Counts(counts) => write!(text, "{}", counts[row]),
         Values::Flags(flags) => write!(text, "{}", flags[row].map_or(-1, i8::from)),
-        Values::Words { words, codes } if name == IN_WORDS => {
-            text.write_str(&words[codes[row] as usize])
+        Values::Words { codes, .. } if name == IN_WORDS => {
+            text.write_str(ELEMENTS[codes[row] as usize])
         }
         Values::Words { codes, .. } => write!(text, "{}", codes[row] + first_code(name)),
     };
@@ -236,14 +270,25 @@ fn first_code(name: &str) -> u32 {
     if name == "type" { FIRST_TYPE } else { 0 }
 }
 
-/// A line of what is known of the run and one of what the columns are: OVITO looks for the first frame in the
+/// A line of what is known of the run and one of what the columns of each dump are: OVITO looks for the first frame in the
 /// first 20 lines alone, and takes a file for none of its formats if it is not there.
-fn front(facts: &RunFacts, columns: &[(&'static str, &Column)]) -> String {
+fn front(facts: &RunFacts, frame: &Frame) -> String {
     let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
-    let columns = columns.iter().filter(|(name, _)| *name != IN_WORDS);
-    let columns = columns.map(|(name, column)| column.described_with_codes(name, first_code(name)));
-    let [facts, columns] = [facts.collect::<Vec<_>>(), columns.collect()].map(|all| all.join("; "));
-    format!("ITEM: UNITS\nsi\nITEM: PARAMETERS\n{facts}\n{columns}\n")
+    let facts = facts.collect::<Vec<_>>().join("; ");
+    let described = |table, first: &[(&'static str, &str)]| {
+        let columns = columns(table, first);
+        let columns = columns.iter().filter(|(name, _)| *name != IN_WORDS);
+        let columns =
+            columns.map(|(name, column)| column.described_with_codes(name, first_code(name)));
+        columns.collect::<Vec<_>>().join("; ")
+    };
+    let of_contacts = described(&frame.contacts, &CONTACT_COLUMNS);
+    let of_grains = described(&frame.grains, &GRAIN_COLUMNS);
+    let of_walls = described(&frame.walls, &[]);
+    format!(
+        "ITEM: UNITS\nsi\nITEM: PARAMETERS\n{facts}\n{of_contacts}\ngrains: {of_grains}\n\
+         walls: {of_walls}\n"
+    )
 }
 
 fn head(moment: &Moment, label: &str, count: usize) -> String {
@@ -268,10 +313,14 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
         ),
     };
     let along_z = if tilt == 0.0 { "" } else { " 0.0" };
+    let time = match label {
+        ATOMS => String::new(),
+        _ => format!("{TIME}\n{:?}\n", observables.time_secs),
+    };
     format!(
-        "ITEM: TIME\n{:?}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF {label}\n{count}\n\
+        "{time}{STEP}\n{}\nITEM: NUMBER OF {label}\n{count}\n\
          ITEM: BOX BOUNDS {bounds}{:?} {:?}{along_z}\nITEM: {label}",
-        observables.time_secs, observables.step, -radius, radius
+        observables.step, -radius, radius
     )
 }
 

@@ -217,6 +217,23 @@ pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()
     Err(Error::value("data-format", names.join(","), allowed))
 }
 
+/// Fails where grains, in a recording or a table of it, are of a scene whose borders wrap: the pile that they would start
+/// has none, and a gravity of its own.
+pub(crate) fn check_not_periodic(path: &Path) -> Result<()> {
+    let manifests = path.ancestors().take(3).map(|folder| folder.join(MANIFEST));
+    let Some(text) = manifests.filter_map(|path| std::fs::read(path).ok()).next() else {
+        return Ok(());
+    };
+    let manifest: Value = serde_json::from_slice(&text).unwrap_or_default();
+    let facts = manifest["about"].as_object();
+    if facts.is_some_and(|facts| facts.keys().any(|name| name.starts_with("periodic."))) {
+        let reason = "is of a scene with periodic borders, but must be of one without, as the pile \
+                      that it starts has none: go on with such a run by --restart";
+        return Err(Error::file(path, reason));
+    }
+    Ok(())
+}
+
 fn column_in_manifest(column: &Column) -> Value {
     let Column { name, unit, about, values } = column;
     let values = match values {

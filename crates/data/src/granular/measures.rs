@@ -129,8 +129,10 @@ columns! {
         deviator: f64, "N/m";
         /// Direction in which compression is largest, from the x axis anticlockwise, at least 0 and below 180.
         principal_direction: f64, "degree";
-        /// (1/2A) Σ m |v − v̄|², v̄ the velocity of the centre of mass: the part of the pressure that is momentum
-        /// carried by grains. It is in none of the stresses above.
+        /// (1/2A) Σ m |v − v̄|²: the part of the pressure that is momentum carried by grains, in none of the stresses
+        /// above. v̄ is the mean flow at the grain, linear in place and fitted to all grains less than 3 mean diameters
+        /// away, itself included; of n grains n/(n − 3) makes up for the fit. Where they are fewer than 7, it is the
+        /// velocity of the centre of mass of all.
         kinetic_pressure: f64, "N/m";
         /// F_xx of the fabric F = mean of n ⊗ n over all contacts; its trace is 1.
         fabric_xx: f64, "1";
@@ -185,7 +187,7 @@ impl PileMeasures {
     }
 
     pub(super) fn of_parts(parts: &MomentParts) -> Self {
-        let MomentParts { network, cells, coordination, forces, clusters } = parts;
+        let MomentParts { network, cells, coordination, forces, clusters, peculiar_energy } = parts;
         let stress = stress::stress_of_contacts(network).over(cells.area);
         let fabric = stress::fabric(network);
         Self {
@@ -200,7 +202,7 @@ impl PileMeasures {
             pressure: stress.mean(),
             deviator: stress.deviator(),
             principal_direction: stress.direction(),
-            kinetic_pressure: stress::energy_about_mean(network) / cells.area,
+            kinetic_pressure: peculiar_energy / cells.area,
             fabric_xx: fabric.xx,
             fabric_xy: fabric.xy,
             fabric_yy: fabric.yy,

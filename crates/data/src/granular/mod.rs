@@ -16,6 +16,7 @@
 
 mod cells;
 mod histograms;
+mod mean_flow;
 mod measures;
 mod network;
 mod stress;
@@ -56,6 +57,7 @@ struct MomentParts<'a> {
     coordination: Coordination,
     forces: ForceDistribution,
     clusters: Clusters,
+    peculiar_energy: f64,
 }
 
 impl<'a> MomentParts<'a> {
@@ -66,6 +68,7 @@ impl<'a> MomentParts<'a> {
             coordination: Coordination::of(&network),
             forces: ForceDistribution::of(&network),
             clusters: Clusters::of(&network),
+            peculiar_energy: mean_flow::peculiar_energy(&network, &moment.surroundings),
             network,
         }
     }

@@ -105,7 +105,7 @@ fn link(contact: &ContactState, radius: f64) -> NetworkContact {
         gap: contact.gap,
         own_branch,
         other_branch,
-        force: contact.force(),
+        force: contact.force,
         normal_force: contact.normal_force,
         status: contact.status,
         bears: false,

@@ -31,17 +31,6 @@ pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     sums
 }
 
-/// ½ Σ m |v − v̄|², v̄ the velocity of the centre of mass, J.
-pub(super) fn energy_about_mean(network: &Network) -> f64 {
-    let mass: f64 = network.grains().map(|(_, grain)| grain.mass).sum();
-    let momentum: DVec2 = network.grains().map(|(_, grain)| grain.mass * grain.velocity).sum();
-    let mean = momentum / mass;
-    let energies = network
-        .grains()
-        .map(|(_, grain)| 0.5 * grain.mass * (grain.velocity - mean).length_squared());
-    energies.sum()
-}
-
 /// Mean of n ⊗ n over all contacts, whether they bear a force or not; NaN without contacts.
 pub(super) fn fabric(network: &Network) -> Tensor {
     let mut sum = Tensor::default();

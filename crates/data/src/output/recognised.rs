@@ -14,7 +14,7 @@ const MOST_OF_HEAD: u64 = 1 << 20;
 const TAIL: u64 = 4096;
 
 /// How files begin that this program writes, and what else is found there.
-const BEGINNINGS: [(&[u8], &[u8]); 10] = [
+const BEGINNINGS: [(&[u8], &[u8]); 12] = [
     (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
     (b"{\n  \"program\": \"slump\",\n", b""),
     (b"{\n  \"about\": {\n", b"\n  \"program\": \"slump\",\n"),
@@ -24,6 +24,8 @@ const BEGINNINGS: [(&[u8], &[u8]); 10] = [
     (b"step,time_secs,", b""),
     (b"# ", b"# column step: "),
     (b"ITEM: UNITS\nsi\nITEM: PARAMETERS\n", b""),
+    (b"ITEM: TIMESTEP\n", b" x_unwrapped y_unwrapped "),
+    (b"ITEM: TIME\n", b"\nITEM: ENTRIES id name motion "),
     (b"slump-state ", b""),
 ];
 /// Of what other programs read and have no word for who wrote it.

@@ -97,7 +97,7 @@ fn weigh(grains: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> 
 fn on_bottom(simulation: &Simulation) -> f64 {
     let contacts = simulation.moment().contacts.into_iter();
     let of_bottom = contacts.filter(|contact| contact.other == OtherBody::Boundary(0));
-    of_bottom.map(|contact| contact.force().y).sum()
+    of_bottom.map(|contact| contact.force.y).sum()
 }
 
 /// The share that the bottom carries of a filling of so many λ.

@@ -83,7 +83,7 @@ fn pack(
 
 /// The contacts that bear a force and lead to no rattler.
 fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState> {
-    let sum: f64 = moment.contacts.iter().map(|contact| contact.force().length()).sum();
+    let sum: f64 = moment.contacts.iter().map(|contact| contact.force.length()).sum();
     let least = BEARS_FROM * sum / moment.contacts.len() as f64;
     let is_held = |grain: u32| !is_rattler[grain as usize];
     let bears = |contact: &&ContactState| {
@@ -91,7 +91,7 @@ fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState>
             OtherBody::Grain(other) => is_held(other),
             OtherBody::FixedDisc(_) | OtherBody::Boundary(_) => true,
         };
-        contact.force().length() > least && is_held(contact.grain) && other_is_held
+        contact.force.length() > least && is_held(contact.grain) && other_is_held
     };
     moment.contacts.iter().filter(bears).collect()
 }

@@ -177,7 +177,7 @@ fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
         let of_it = moment.contacts.iter().filter(|contact| {
             matches!(contact.other, OtherBody::FixedDisc(disc) if (disc >= of_plate) == is_upper)
         });
-        of_it.map(|contact| contact.force()).sum()
+        of_it.map(|contact| contact.force).sum()
     };
     [on(false), on(true)]
 }

@@ -170,7 +170,7 @@ impl BlockDescent {
 
     /// Leaves the stiffnesses to the next step.
     fn remember<M: Model>(&self, stage: &mut Stage<'_, M>) {
-        let (_, _, memories) = stage.state.contacts.parts_mut();
+        let memories = stage.state.contacts.parts_mut().memories;
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
         for (stiffness, ((_, row), &contact)) in self.stiffness.iter().zip(rows) {
             let per_reduced = row.effective_mass / (self.substep_secs * self.substep_secs);

@@ -7,7 +7,7 @@
 //! Spring and dashpot together never pull: N ≥ −C₀, as everywhere here, and the cone is that of the
 //! contact laws. Where friction slides, ξ is shortened to what gives T at the bound.
 
-use crate::contact::{Contact, ContactLaw, ContactMemory, Impulse, law};
+use crate::contact::{Contact, ContactLaw, ContactMemory, ContactParts, Impulse, Transmitted, law};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::spring_dashpot::{
@@ -53,7 +53,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         substep_secs: parameters.time_step_secs / f64::from(substeps),
     };
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
-    let mut totals = Totals::new(stage.state.contacts.contacts());
+    let of_step = stage.state.contacts.contacts().to_vec();
     stage.state.contacts.impulses_mut().fill(Impulse::default());
     let mut pushes = Vec::new();
     let mut is_first = true;
@@ -62,7 +62,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
             stage.state.detect::<M>(None);
         }
         substepping.begin(stage);
-        elements.push(stage, &substepping.start, &mut totals, &mut pushes);
+        elements.push(stage, &substepping.start, &mut pushes);
         let bodies = &stage.problem.bodies.now;
         let list = stage.state.contacts.contacts();
         for (contact, &(mass, impulse, of_wall)) in list.iter().zip(&pushes) {
@@ -76,7 +76,9 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         drive_walls(stage, substepping.substep_secs, &pushes, &mut substepping.works);
         substepping.place(stage);
     });
-    stage.problem.set_impulses(&totals.impulses);
+    let sum = |contact: &Contact| stage.state.contacts.sum_of(contact);
+    let impulses: Vec<Impulse> = of_step.iter().map(sum).collect();
+    stage.problem.set_impulses(&impulses);
     set_drive_speeds(stage);
     substepping.end_step(stage, substeps)
 }
@@ -137,17 +139,17 @@ impl Elements {
         &self,
         stage: &mut Stage<'_, M>,
         start: &[M::Body<f64>],
-        totals: &mut Totals,
         pushes: &mut Vec<(f64, [f64; 2], [f64; 2])>,
     ) {
         let h = self.substep_secs;
         let State { world, contacts, walls, .. } = &mut *stage.state;
         let bodies = &mut stage.problem.bodies.now;
         let masses = &world.grains.masses;
-        let (list, impulses, memories) = contacts.parts_mut();
+        let ContactParts { contacts: list, found_in, impulses, memories, sums } =
+            contacts.parts_mut();
         pushes.clear();
-        totals.next = 0;
-        for ((contact, sum), memory) in list.iter().zip(impulses).zip(memories) {
+        let columns = list.iter().zip(found_in).zip(impulses).zip(memories);
+        for (((contact, &found_in), sum), memory) in columns {
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
             let mass = masses[i] * share;
@@ -162,7 +164,7 @@ impl Elements {
             };
             sum.normal += impulse.normal;
             sum.tangential += impulse.tangential;
-            totals.add(contact, impulse);
+            sums.add(Transmitted::of(*contact, found_in, (contact.normal, impulse)));
             let reduced = [impulse.normal / mass, impulse.tangential / mass];
             pushes.push((mass, reduced, of_wall));
             if j < bodies.len() {
@@ -173,32 +175,6 @@ impl Elements {
             } else {
                 M::push_single(&mut bodies[i], normal, reduced);
             }
-        }
-    }
-}
-
-/// What the contacts of the beginning of a step transmit in its substepping, N·s.
-struct Totals {
-    contacts: Vec<Contact>,
-    impulses: Vec<Impulse>,
-    next: usize,
-}
-
-impl Totals {
-    fn new(contacts: &[Contact]) -> Self {
-        let impulses = vec![Impulse::default(); contacts.len()];
-        Self { contacts: contacts.to_vec(), impulses, next: 0 }
-    }
-
-    /// Adds to the contact of that pair, if it is one of them. Both lists are sorted alike.
-    fn add(&mut self, contact: &Contact, impulse: Impulse) {
-        let behind = |then: &Contact| then.pair() < contact.pair();
-        while self.contacts.get(self.next).is_some_and(behind) {
-            self.next += 1;
-        }
-        if self.contacts.get(self.next).is_some_and(|then| then.pair() == contact.pair()) {
-            self.impulses[self.next].normal += impulse.normal;
-            self.impulses[self.next].tangential += impulse.tangential;
         }
     }
 }

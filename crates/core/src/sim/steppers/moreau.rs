@@ -21,6 +21,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     set_up(stage, settings);
     let report = remedies::solve(stage, settings);
     let result = stage.move_by(report, settings);
+    stage.state.contacts.sum_up();
     remedies::after_step(stage, settings);
     result
 }

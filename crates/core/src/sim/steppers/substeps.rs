@@ -210,7 +210,7 @@ pub(super) fn remember<M: Model>(
     substep_secs: f64,
 ) {
     let Stage { state: State { contacts: list, .. }, problem, .. } = stage;
-    let (_, _, memories) = list.parts_mut();
+    let memories = list.parts_mut().memories;
     let rows = problem.rows.iter();
     for ((row, contact), &index) in rows.zip(contacts).zip(&problem.rows.contacts) {
         let per_secs = row.effective_mass / substep_secs;

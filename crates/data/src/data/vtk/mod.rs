@@ -3,10 +3,10 @@
 //! touched point of a boundary.
 //!
 //! Arrays have the names of the tables' columns. Two columns that are one vector are one array, `velocity`,
-//! `normal` or `point`, with the columns' names for its components: VTK's vectors are in space. Words are
+//! `normal`, `force` or `point`, with the columns' names for its components: VTK's vectors are in space. Words are
 //! numbers, since nothing is coloured by words; `NAME_words`, an array of the file as a whole, has the
 //! words in the order of the numbers, `columns` what each column is and its unit, `about` the run. What is
-//! measured of the whole pile is there too, as `pile_NAME`.
+//! measured of the whole pile is there too, as `pile_NAME`, and what walls do, with a value a wall, as `wall_NAME`.
 
 mod poly_data;
 
@@ -39,9 +39,15 @@ const LONGEST_HEAD: u64 = 1024;
 const OF_FRAME: [&str; 2] = ["step", "time"];
 /// In front of the names of what is measured of the whole pile, since grains have arrays of the same names.
 const PILE: &str = "pile_";
+/// In front of the names of what walls do.
+const WALL: &str = "wall_";
 /// Vectors, and the columns that are their components.
-const VECTORS: [(&str, [&str; 2]); 3] =
-    [("velocity", ["vx", "vy"]), ("normal", ["nx", "ny"]), ("point", ["x", "y"])];
+const VECTORS: [(&str, [&str; 2]); 4] = [
+    ("velocity", ["vx", "vy"]),
+    ("normal", ["nx", "ny"]),
+    ("point", ["x", "y"]),
+    ("force", ["fx", "fy"]),
+];
 /// What stands where a law knows no such thing as a flag.
 const NEITHER: i8 = -1;
 
@@ -160,7 +166,8 @@ fn grains_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let centres: Vec<DVec2> = grains.chain(fixed).collect();
     let points = centres.iter().map(DVec2::to_array);
     let file = file(PolyData::new(VtkCells::Points, points), frame, &frame.grains, "point", facts);
-    with_measures(file, &frame.measures).finish("radius")
+    let file = with_arrays(file, PILE, &frame.measures);
+    with_arrays(file, WALL, &frame.walls).finish("radius")
 }
 
 /// Contacts as lines, with the columns of their table.
@@ -239,24 +246,24 @@ fn file(
     file
 }
 
-/// Adds what is measured of the whole pile.
-fn with_measures(mut file: PolyData, measures: &Table) -> PolyData {
-    let columns = measures.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
+/// Adds the columns of a table whose rows are no points, with `prefix` in front of their names.
+fn with_arrays(mut file: PolyData, prefix: &str, table: &Table) -> PolyData {
+    let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     for Column { name, values, .. } in columns {
-        let name = format!("{PILE}{name}");
+        let name = format!("{prefix}{name}");
         match values {
-            Values::Numbers(numbers) => {
-                numbers.iter().for_each(|&number| file.add_number_or_none(&name, number));
-            }
+            Values::Numbers(numbers) => file.add_numbers(&name, numbers.iter().copied()),
             Values::SomeNumbers(numbers) => {
-                let numbers = numbers.iter().map(|number| number.unwrap_or(f64::NAN));
-                numbers.for_each(|number| file.add_number_or_none(&name, number));
+                file.add_numbers(&name, numbers.iter().map(|number| number.unwrap_or(f64::NAN)));
             }
             Values::Counts(counts) => {
-                counts.iter().for_each(|&count| file.add_number_or_none(&name, count as i64));
+                file.add_numbers(&name, counts.iter().map(|&count| count as i64));
             }
-            // None of a pile is.
-            Values::Flags(_) | Values::Words { .. } => {}
+            Values::Words { words, codes } => {
+                file.add_words(&name, codes.iter().map(|&code| &words[code as usize]));
+            }
+            // There are none.
+            Values::Flags(_) => {}
         }
     }
     file

@@ -71,13 +71,18 @@ impl PolyData {
         );
     }
 
-    /// Adds a number that goes with the file as a whole and may be none, which no text is for.
-    pub(super) fn add_number_or_none<N: Scalar>(&mut self, name: &str, number: N) {
-        let offset = self.append_bytes(|bytes| number.put(bytes));
+    /// Adds numbers that go with the file as a whole and may be none, which no text is for.
+    pub(super) fn add_numbers<N: Scalar>(
+        &mut self,
+        name: &str,
+        numbers: impl ExactSizeIterator<Item = N>,
+    ) {
+        let count = numbers.len();
+        let offset = self.append_bytes(|bytes| numbers.for_each(|number| number.put(bytes)));
         let _ = writeln!(
             self.of_file,
-            "      <DataArray type=\"{}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"appended\" \
-             offset=\"{offset}\"/>",
+            "      <DataArray type=\"{}\" Name=\"{name}\" NumberOfTuples=\"{count}\" \
+             format=\"appended\" offset=\"{offset}\"/>",
             N::TYPE
         );
     }

@@ -86,7 +86,7 @@ pub(super) fn solve_range<M: Model>(
         }
         shorten(problem, lowered);
     }
-    shocks.finish(problem);
+    shocks.finish(problem, contacts);
     result.bonds = Some(update_bonds(problem, contacts.bonds_mut(), shocks, numbers));
     Ok(result)
 }

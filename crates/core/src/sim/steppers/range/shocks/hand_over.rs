@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, grains};
-use crate::contact::Candidates;
+use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, along_normal, grains};
+use crate::contact::{Candidates, ContactList, Impulse};
 use crate::sim::steppers::range::StepNumbers;
 use crate::solver::{Model, StepProblem};
 use crate::world::World;
@@ -134,7 +134,25 @@ impl Shocks {
 
     /// Takes note of a solved step: its impulse λ on a pair that met at t moves grains for the time that was left
     /// alone, and not by Δt·λ.
-    pub(in super::super) fn finish<M: Model>(&mut self, problem: &StepProblem<M>) {
+    /// Contacts are told what they transmitted in shocks and step.
+    pub(in super::super) fn finish<M: Model>(
+        &mut self,
+        problem: &StepProblem<M>,
+        contacts: &mut ContactList,
+    ) {
+        let Self { of_step, of_shocks, .. } = self;
+        of_step.clear();
+        of_step.resize(contacts.contacts().len(), (DVec2::ZERO, Impulse::default()));
+        for (number, row) in problem.rows() {
+            let impulse = problem.reduced_impulse(number, row);
+            of_step[problem.rows.contacts[number] as usize] = along_normal(row, impulse);
+        }
+        for (index, &(normal, impulse)) in of_step.iter().enumerate() {
+            contacts.add_to_sums(index, normal, impulse);
+        }
+        for &(number, (normal, impulse)) in &*of_shocks {
+            contacts.add_to_sums(problem.rows.contacts[number] as usize, normal, impulse);
+        }
         for (number, row) in problem.rows() {
             let (i, j) = grains(problem, number);
             if !self.acts_late(number, i, j) {

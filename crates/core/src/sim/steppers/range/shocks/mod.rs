@@ -57,12 +57,12 @@ pub(super) use hand_over::ClosedBond;
 
 use glam::DVec2;
 
-use crate::contact::{Candidates, Contact, ContactList};
+use crate::contact::{Candidates, Contact, ContactList, Impulse};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{Model, StepProblem, for_each_row};
+use crate::solver::{Model, Row, StepProblem, for_each_row};
 use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
@@ -210,6 +210,9 @@ pub(super) struct Shocks {
     numbers: StepNumbers,
     pairs: Vec<ShockPair>,
     bodies: Vec<ShockBody>,
+    /// The impulses of shocks, by their rows, and of the step, by its contacts, along their normals of then.
+    of_shocks: Vec<(usize, (DVec2, Impulse))>,
+    of_step: Vec<(DVec2, Impulse)>,
     /// λ_n·m_ij from which on a contact that touches is struck, N·s.
     least: f64,
     /// The fastest shock of the step so far, m/s.
@@ -238,6 +241,12 @@ fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
         squared += free * free;
     });
     squared.sqrt()
+}
+
+/// The normal of a row, and the impulse of its (λ_n, λ_t), m/s.
+fn along_normal<M: Model>(row: &Row<M>, reduced: [f64; 2]) -> (DVec2, Impulse) {
+    let [normal, tangential] = reduced.map(|along| row.effective_mass * along);
+    (M::components(row.normal).into(), Impulse { normal, tangential })
 }
 
 /// Along x and y.
@@ -314,6 +323,7 @@ impl Shocks {
             let fallen = along_axes::<M>(&M::from_coordinates(body.gain));
             body.rest_of_way = -0.5 * numbers.time_step_secs * fallen;
         }
+        self.of_shocks.clear();
         self.least = tolerance * scale(problem);
         self.fastest = 0.0;
     }

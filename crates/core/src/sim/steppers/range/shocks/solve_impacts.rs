@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{NEVER, NextImpact, Role, Shocks, Touch, along_axes, grains, scale};
+use super::{NEVER, NextImpact, Role, Shocks, Touch, along_axes, along_normal, grains, scale};
 use crate::sim::stepping::StepResult;
 use crate::solver::{
     Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem, StopTest, measure,
@@ -153,6 +153,7 @@ impl Shocks {
         for ((_, row), &number) in part.rows().zip(&part.rows.contacts) {
             let pair = &mut self.pairs[number as usize];
             pair.impulse += row.shifted_impulse;
+            self.of_shocks.push((number as usize, along_normal(row, row.impulse())));
             let of_gravity = row.effective_mass * row.shifted_impulse * pair.gained;
             measures.normal_work += of_gravity;
             result.gravity_work -= of_gravity;

@@ -1,0 +1,71 @@
+//! What pairs transmit in a step that is taken in pieces, each of which finds its contacts anew and turns their normals.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::contact_list::{Contact, Impulse};
+
+/// What a pair has transmitted since the step began.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Transmitted {
+    /// As it was first found in the step.
+    pub contact: Contact,
+    /// The step in which it was found to touch.
+    pub found_in: u64,
+    /// Sums along normals and tangents as they were, N·s.
+    pub sums: Impulse,
+    /// The same as a vector on grain i, N·s.
+    pub vector: DVec2,
+}
+
+impl Transmitted {
+    /// What a contact transmits along a normal.
+    pub(crate) fn of(contact: Contact, found_in: u64, (normal, impulse): (DVec2, Impulse)) -> Self {
+        let vector = impulse.normal * normal + impulse.tangential * normal.perp();
+        Self { contact, found_in, sums: impulse, vector }
+    }
+}
+
+/// Those of a step, sorted as contacts are.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StepSums {
+    pub(super) pairs: Vec<Transmitted>,
+    /// Where the next pair is looked for first: but for shocks they come in the order of the list.
+    #[serde(skip)]
+    next: usize,
+}
+
+impl StepSums {
+    pub(super) fn clear(&mut self) {
+        self.pairs.clear();
+        self.next = 0;
+    }
+
+    /// What a pair has transmitted.
+    pub(super) fn of(&self, pair: (u32, u32)) -> Impulse {
+        self.place_of(pair).map_or_else(|_| Impulse::default(), |place| self.pairs[place].sums)
+    }
+
+    fn place_of(&self, pair: (u32, u32)) -> Result<usize, usize> {
+        self.pairs.binary_search_by_key(&pair, |there| there.contact.pair())
+    }
+
+    /// Adds to what a pair has transmitted.
+    pub(crate) fn add(&mut self, added: Transmitted) {
+        let pair = added.contact.pair();
+        let at_next = self.pairs.get(self.next).map(|there| there.contact.pair());
+        let place = if at_next == Some(pair) { Ok(self.next) } else { self.place_of(pair) };
+        match place {
+            Ok(place) => {
+                let there = &mut self.pairs[place];
+                there.sums.normal += added.sums.normal;
+                there.sums.tangential += added.sums.tangential;
+                there.vector += added.vector;
+            }
+            Err(place) => self.pairs.insert(place, added),
+        }
+        self.next = place.unwrap_or_else(|place| place) + 1;
+    }
+}

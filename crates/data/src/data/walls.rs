@@ -1,0 +1,204 @@
+//! The table of walls: what no grain moves, each as the rigid body that it goes as.
+//!
+//! A motion is a wall with all that it moves; a boundary that none moves is one, and all fixed discs that none moves are
+//! one. Forces are those of the contacts, the means over the step.
+
+use glam::DVec2;
+
+use super::table::Table;
+use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber};
+use crate::column_spec::{ColumnSpec, column};
+use crate::sim::{ContactState, GrainState, Moment, MotionView, OtherBody, Surroundings};
+use crate::world::{Boundary, Edge};
+
+struct WallTableRow {
+    step: u64,
+    time_secs: f64,
+    id: u64,
+    /// Place in the list of names.
+    name: u32,
+    motion: Option<f64>,
+    /// What goes as one.
+    wall: MotionView,
+    place: DVec2,
+    force: DVec2,
+    torque: f64,
+    work: f64,
+}
+
+const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = &[
+    ColumnSpec::step(|row| row.step),
+    ColumnSpec::time(|row| row.time_secs),
+    column("id", "", "number of the wall", Count(|row| row.id)),
+    column(
+        "name",
+        "",
+        "shape and number of each of its boundaries, and fixed discs",
+        Name(|row| row.name),
+    ),
+    column(
+        "motion",
+        "",
+        "number of the motion; none of what is at rest or moves by itself",
+        SomeNumber(|row| row.motion),
+    ),
+    column(
+        "x",
+        "m",
+        "pivot, or a point of its first boundary, or its first disc",
+        Number(|row| row.place.x),
+    ),
+    column(
+        "y",
+        "m",
+        "pivot, or a point of its first boundary, or its first disc",
+        Number(|row| row.place.y),
+    ),
+    column("angle", "rad", "turned since the start, anticlockwise", Number(|row| row.wall.turned)),
+    column(
+        "vx",
+        "m/s",
+        "velocity; of what turns, that of the pivot",
+        Number(|row| row.wall.velocity.x),
+    ),
+    column(
+        "vy",
+        "m/s",
+        "velocity; of what turns, that of the pivot",
+        Number(|row| row.wall.velocity.y),
+    ),
+    column(
+        "omega",
+        "rad/s",
+        "angular velocity, anticlockwise",
+        Number(|row| row.wall.angular_velocity),
+    ),
+    column("fx", "N", "force of the grains on it, mean over the step", Number(|row| row.force.x)),
+    column("fy", "N", "force of the grains on it, mean over the step", Number(|row| row.force.y)),
+    column(
+        "torque",
+        "N m",
+        "torque of the grains on it about (x, y), anticlockwise",
+        Number(|row| row.torque),
+    ),
+    column(
+        "work",
+        "J",
+        "what it does on grains in such a step with those forces, as fast as it is",
+        Number(|row| row.work),
+    ),
+];
+
+impl Table {
+    /// A row a wall.
+    pub fn of_walls(moment: &Moment) -> Self {
+        let (walls, names): (Vec<_>, Vec<_>) = walls(moment).into_iter().unzip();
+        Self::new("walls", WALL_COLUMNS, &walls, &names)
+    }
+
+    pub(super) fn no_walls() -> Self {
+        Self::new("walls", WALL_COLUMNS, &[], &[])
+    }
+}
+
+/// The fixed discs as their motions have them go.
+pub(super) fn fixed_discs(surroundings: &Surroundings) -> impl Iterator<Item = GrainState> + '_ {
+    surroundings.fixed_discs.iter().enumerate().map(|(number, disc)| {
+        let motion = surroundings.moving.iter().find(|it| it.fixed_discs.contains(&number));
+        GrainState {
+            position: disc.position,
+            unwrapped: disc.position,
+            angle: motion.map_or(0.0, |motion| motion.turned),
+            velocity: motion.map_or(DVec2::ZERO, |motion| motion.velocity_at(disc.position)),
+            angular_velocity: motion.map_or(0.0, |motion| motion.angular_velocity),
+            radius: disc.radius,
+            mass: f64::INFINITY,
+            feels_gravity: false,
+            tone: 0,
+            lost: false,
+        }
+    })
+}
+
+fn walls(moment: &Moment) -> Vec<(WallTableRow, String)> {
+    let Surroundings { boundaries, fixed_discs, moving, .. } = &*moment.surroundings;
+    // Pistons come first and are no motions.
+    let by_themselves = boundaries.iter().filter(|shape| matches!(shape, Boundary::Piston { .. }));
+    let first_motion = by_themselves.count().min(moving.len());
+    let moves = |is_it: &dyn Fn(&MotionView) -> bool| moving.iter().any(is_it);
+    let still = (0..boundaries.len()).filter(|it| !moves(&|wall| wall.boundaries.contains(it)));
+    let still = still.map(|it| MotionView { boundaries: vec![it], ..MotionView::default() });
+    let discs: Vec<usize> =
+        (0..fixed_discs.len()).filter(|it| !moves(&|wall| wall.fixed_discs.contains(it))).collect();
+    let discs =
+        (!discs.is_empty()).then(|| MotionView { fixed_discs: discs, ..MotionView::default() });
+    let walls = moving.iter().cloned().chain(still).chain(discs);
+    walls
+        .enumerate()
+        .map(|(number, wall)| {
+            let motion = (first_motion..moving.len()).contains(&number);
+            let motion = motion.then(|| (number - first_motion) as f64);
+            row(moment, number, motion, wall)
+        })
+        .collect()
+}
+
+fn row(
+    moment: &Moment,
+    number: usize,
+    motion: Option<f64>,
+    wall: MotionView,
+) -> (WallTableRow, String) {
+    let Surroundings { boundaries, fixed_discs, periodic, .. } = &*moment.surroundings;
+    let shapes = wall.boundaries.iter().map(|&it| format!("{} {it}", boundaries[it].word()));
+    let discs = match wall.fixed_discs.len() {
+        0 => None,
+        count => Some(format!("{count} fixed discs")),
+    };
+    let name = shapes.chain(discs).collect::<Vec<_>>().join(", ");
+    let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));
+    let of_disc = || wall.fixed_discs.first().map(|&it| fixed_discs[it].position);
+    let turns = wall.angular_velocity != 0.0;
+    let place = if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() };
+    let secs = moment.observables.time_step_secs;
+    let (mut force, mut torque, mut work) = (DVec2::ZERO, 0.0, 0.0);
+    for contact in moment.contacts.iter().filter(|contact| touches(&wall, contact)) {
+        // Where the grain was when the forces were.
+        let touched = contact.point - secs * moment.grains[contact.grain as usize].velocity;
+        let offset = touched - place;
+        let offset = periodic.map_or(offset, |periodic| periodic.shortest(offset));
+        force -= contact.force;
+        torque -= offset.perp_dot(contact.force);
+        let round = wall.surface_speed * contact.normal.perp();
+        work += secs * contact.force.dot(wall.velocity_at(touched) + round);
+    }
+    let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
+    let row = WallTableRow {
+        step,
+        time_secs,
+        id: number as u64,
+        name: number as u32,
+        motion,
+        wall,
+        place,
+        force,
+        torque,
+        work,
+    };
+    (row, name)
+}
+
+fn touches(wall: &MotionView, contact: &ContactState) -> bool {
+    match contact.other {
+        OtherBody::Grain(_) => false,
+        OtherBody::FixedDisc(disc) => wall.fixed_discs.contains(&(disc as usize)),
+        OtherBody::Boundary(boundary) => wall.boundaries.contains(&(boundary as usize)),
+    }
+}
+
+fn point_of(boundary: &Boundary) -> Option<DVec2> {
+    boundary.edges().first().map(|edge| match *edge {
+        Edge::Endless { point, .. } => point,
+        Edge::Wall([from, _]) | Edge::Side([from, _]) => from,
+    })
+}

@@ -1,0 +1,341 @@
+//! What tables hold of forces adds up: to how grains change, and to the work of borders.
+
+use glam::DVec2;
+use slump::data::{Table, Values};
+use slump::sim::{Moment, Simulation, Stepper};
+use slump::solver::{SolverSettings, StopTest};
+use slump::world::Gravity;
+
+use super::*;
+
+fn numbers(table: &Table, name: &str) -> Vec<f64> {
+    let column = table.columns.iter().find(|column| column.name == name);
+    match &column.unwrap_or_else(|| panic!("no column {name}")).values {
+        Values::Numbers(numbers) => numbers.clone(),
+        Values::SomeNumbers(numbers) => {
+            numbers.iter().map(|number| number.unwrap_or(f64::NAN)).collect()
+        }
+        Values::Counts(counts) => counts.iter().map(|&count| count as f64).collect(),
+        other => panic!("{name} has {other:?}"),
+    }
+}
+
+fn vectors(table: &Table, names: [&str; 2]) -> Vec<DVec2> {
+    let [x, y] = names.map(|name| numbers(table, name));
+    x.into_iter().zip(y).map(DVec2::from).collect()
+}
+
+/// What a step's frame says of grains and contacts.
+struct FrameTables {
+    places: Vec<DVec2>,
+    velocities: Vec<DVec2>,
+    spins: Vec<f64>,
+    radii: Vec<f64>,
+    masses: Vec<f64>,
+    /// Grains i and j of each contact, the latter unless it is none.
+    pairs: Vec<(usize, Option<usize>)>,
+    forces: Vec<DVec2>,
+    tangential: Vec<f64>,
+}
+
+impl FrameTables {
+    fn of(moment: &Moment) -> Self {
+        let (grains, contacts) = (Table::of_grains(moment), Table::of_contacts(moment));
+        let count = moment.grains.len();
+        let [i, j] = ["id_i", "id_j"].map(|name| numbers(&contacts, name));
+        let ends = i.into_iter().zip(j);
+        Self {
+            places: vectors(&grains, ["x", "y"]),
+            velocities: vectors(&grains, ["vx", "vy"]),
+            spins: numbers(&grains, "omega"),
+            radii: numbers(&grains, "radius"),
+            masses: numbers(&grains, "mass"),
+            pairs: ends
+                .map(|(i, j)| (i as usize, Some(j as usize).filter(|&j| j < count)))
+                .collect(),
+            forces: vectors(&contacts, ["fx", "fy"]),
+            tangential: numbers(&contacts, "tangential_force"),
+        }
+    }
+}
+
+/// How far a run's steps are off, relative to the largest momentum and border's work of a step, and to those of
+/// stresses.
+#[derive(Debug, Default)]
+struct Off {
+    momentum: f64,
+    spin: f64,
+    border_work: f64,
+    stress: f64,
+    /// Contacts that transmitted something.
+    contacts: usize,
+    crossing: usize,
+}
+
+fn off_by(run: &mut Simulation, steps: usize) -> Off {
+    let mut off = Off::default();
+    let mut before = FrameTables::of(&run.moment());
+    let (mut largest_impulse, mut largest_torque, mut largest_work) = (0f64, 0f64, 0f64);
+    for _ in 0..steps {
+        let secs = run.parameters().time_step_secs;
+        let now = *run.step().expect("a finite state");
+        let moment = run.moment();
+        let after = FrameTables::of(&moment);
+        let world = run.world();
+        let Gravity::Uniform { acceleration } = world.gravity else { panic!("uniform gravity") };
+        let mut impulses: Vec<DVec2> = moment
+            .grains
+            .iter()
+            .map(|grain| {
+                f64::from(u8::from(grain.feels_gravity)) * secs * grain.mass * acceleration
+            })
+            .collect();
+        let mut torques = vec![0.0; impulses.len()];
+        let rows = after.pairs.iter().zip(&after.forces).zip(&after.tangential);
+        for ((&(i, j), &force), &tangential) in rows.clone() {
+            off.contacts += usize::from(force != DVec2::ZERO);
+            impulses[i] += secs * force;
+            largest_impulse = largest_impulse.max(secs * force.length());
+            for grain in std::iter::once(i).chain(j) {
+                torques[grain] -= secs * after.radii[grain] * tangential;
+                largest_torque = largest_torque.max(torques[grain].abs());
+            }
+            if let Some(j) = j {
+                impulses[j] -= secs * force;
+            }
+        }
+        let cell = world.periodic.unwrap_or_default();
+        let heights = |offset: f64| match cell.y {
+            Some([low, high]) => (offset / (high - low)).round(),
+            None => 0.0,
+        };
+        let mut crossing_work = 0.0;
+        let mut change_of_moment = 0.0;
+        for grain in 0..impulses.len() {
+            // What goes through the upper border comes back slower by the speed of the cell above.
+            let crossed = heights(after.places[grain].y - before.places[grain].y);
+            let slid = crossed * cell.border_speed() * DVec2::X;
+            let unslid = after.velocities[grain] - slid;
+            let (mass, radius) = (after.masses[grain], after.radii[grain]);
+            let change = unslid - before.velocities[grain];
+            off.momentum = off.momentum.max((mass * change - impulses[grain]).length());
+            crossing_work +=
+                0.5 * mass * (after.velocities[grain].length_squared() - unslid.length_squared());
+            change_of_moment += before.places[grain].y * mass * change.x / secs;
+            if run.physics().rotation {
+                let spun = after.spins[grain] - before.spins[grain];
+                let inertia = 0.5 * mass * radius * radius;
+                off.spin = off.spin.max((inertia * spun - torques[grain]).abs());
+            }
+        }
+        if let Some(border_work) = now.border_work {
+            let mut through_contacts = 0.0;
+            for ((&(i, j), &force), _) in rows {
+                let Some(j) = j else { continue };
+                let across = heights(before.places[i].y - before.places[j].y);
+                off.crossing += usize::from(across != 0.0 && force != DVec2::ZERO);
+                through_contacts += secs * cell.border_speed() * across * force.x;
+            }
+            let measures = Table::of_measures(&moment);
+            let [area, stress] = ["area", "stress_xy"].map(|name| numbers(&measures, name)[0]);
+            // Σ y F_x over the grains is Σ f_x ℓ_y over the contacts, and a height more for each across the border.
+            let by_stress = secs * cell.shear_rate * (change_of_moment - area * stress);
+            largest_work = largest_work.max(through_contacts.abs());
+            let found = through_contacts + crossing_work;
+            off.border_work = off.border_work.max((found - border_work).abs());
+            off.stress = off.stress.max((by_stress - through_contacts).abs());
+        }
+        before = after;
+    }
+    off.momentum /= largest_impulse;
+    off.spin /= largest_torque.max(f64::MIN_POSITIVE);
+    off.border_work /= largest_work.max(f64::MIN_POSITIVE);
+    off.stress /= largest_work.max(f64::MIN_POSITIVE);
+    off
+}
+
+/// Rounding, over the sums of a step.
+const EXACT: f64 = 1e-10;
+
+/// Scenes with what each begins to do in few steps: name, Bond, Δt, steps until then and steps that are looked at.
+const CASES: [(&str, f64, f64, u64, usize); 10] = [
+    ("pile", 0.0, 1e-3, 20, 30),
+    // Steps that are cut.
+    ("pile", 50.0, 5e-3, 5, 20),
+    ("pile", 20.0, 1e-3, 20, 30),
+    ("collapse", 0.0, 5e-4, 60, 20),
+    ("drum", 0.0, 1e-3, 150, 30),
+    ("shear", 1.0, 2e-4, 300, 20),
+    ("shear-periodic", 0.0, 1e-3, 60, 60),
+    ("shear-periodic", 5.0, 1e-3, 60, 60),
+    ("vibrated", 0.0, 1e-3, 60, 30),
+    ("newtons-cradle", 0.0, 1e-3, 0, 800),
+];
+
+fn case(
+    stepper: Stepper,
+    (name, bond, time_step_secs, ..): (&str, f64, f64, u64, usize),
+) -> Option<Simulation> {
+    let mut scene = scene(name);
+    scene.stepper = stepper;
+    scene.parameters.bond = bond;
+    scene.parameters.time_step_secs = time_step_secs;
+    scene.solver = SolverSettings { stop: StopTest::Residual, tolerance: 1e-6, ..scene.solver };
+    scene.simulation().ok()
+}
+
+#[test]
+fn forces_between_two_frames_are_the_grains_change_and_the_borders_work() {
+    for &stepper in Stepper::ALL {
+        for of_case in CASES {
+            let Some(mut run) = case(stepper, of_case) else { continue };
+            let (name, bond, _, until, steps) = of_case;
+            run.take_steps(until).expect("finite states");
+            let off = off_by(&mut run, steps);
+            let what = format!("{stepper}, {name} at Bond {bond}: {off:?}");
+            assert!(off.contacts > 0, "{what}");
+            assert!(off.crossing > 100 || name != "shear-periodic", "{what}");
+            assert!(off.border_work < EXACT, "{what}");
+            if stepper == Stepper::Avbd {
+                // It keeps no momentum: bodies see forces before their partners have answered.
+                assert!(off.momentum > EXACT, "{what}");
+                continue;
+            }
+            assert!(off.momentum < EXACT && off.spin < EXACT, "{what}");
+            // A stress has one branch a contact, which under dem goes on changing from substep to substep.
+            let of_stress = if stepper == Stepper::Dem { 0.01 } else { EXACT };
+            assert!(off.stress < of_stress, "{what}");
+        }
+    }
+}
+
+#[test]
+fn pieces_of_a_step_add_up_too() {
+    let mut scene = scene("pile");
+    scene.parameters.time_step_secs = 5e-3;
+    scene.remedies.max_travel = 0.05;
+    for stepper in [Stepper::Moreau, Stepper::Range] {
+        scene.stepper = stepper;
+        let mut run = scene.simulation().expect("a scene");
+        run.take_steps(5).expect("finite states");
+        let off = off_by(&mut run, 20);
+        assert!(
+            off.contacts > 50 && off.momentum < EXACT && off.spin < EXACT,
+            "{stepper}: {off:?}"
+        );
+    }
+}
+
+#[test]
+fn fixed_discs_that_move_are_recorded_as_they_go() {
+    let mut turned = 0.0;
+    for name in ["drum", "shear"] {
+        let mut run = scene(name).simulation().expect("a scene");
+        run.take_steps(50).expect("finite states");
+        let (grains, secs) = (run.moment().grains.len(), run.parameters().time_step_secs);
+        let before = Table::of_grains(&run.moment());
+        run.step().expect("a finite state");
+        let after = Table::of_grains(&run.moment());
+        let mut fastest = 0f64;
+        for disc in grains..after.len() {
+            let [from, to] = [&before, &after].map(|it| vectors(it, ["x", "y"])[disc]);
+            let cell = run.world().periodic.unwrap_or_default();
+            let way = cell.shortest(to - from);
+            let velocity = vectors(&after, ["vx", "vy"])[disc];
+            // A circle bends, by Δt/2 ω times the speed.
+            let spin = numbers(&after, "omega")[disc];
+            let bend = (0.51 * secs * spin.abs() + 1e-9) * velocity.length();
+            assert!((way / secs).distance(velocity) <= bend + 1e-12, "{name} {disc}: {velocity}");
+            let [from, to] = [&before, &after].map(|it| numbers(it, "angle")[disc]);
+            assert!((to - from - secs * spin).abs() < 1e-12, "{name} {disc}: {spin}");
+            turned += to.abs();
+            fastest = fastest.max(velocity.length());
+        }
+        assert!(fastest > 0.01, "{name}: {fastest}");
+    }
+    assert!(turned > 0.0, "the drum turned");
+}
+
+#[test]
+fn walls_tell_of_strain_force_and_work() {
+    // What the floor, the sides and the lid of a biaxial test do.
+    let mut run = scene("biaxial").simulation().expect("a scene");
+    let before = Table::of_walls(&run.moment());
+    run.take_steps(600).expect("finite states");
+    let walls = Table::of_walls(&run.moment());
+    assert_eq!(numbers(&walls, "motion")[..3], [0.0, 1.0, 2.0]);
+    let names = walls.columns.iter().find(|column| column.name == "name").map(|it| &it.values);
+    let Some(Values::Words { words, .. }) = names else { panic!("{names:?}") };
+    assert_eq!(words, &["half-space 1", "half-space 2", "half-space 3", "half-space 0"]);
+    let [left, right, lid, floor] = [0, 1, 2, 3].map(|wall| {
+        let way = vectors(&walls, ["x", "y"])[wall] - vectors(&before, ["x", "y"])[wall];
+        (way, vectors(&walls, ["fx", "fy"])[wall], numbers(&walls, "work")[wall])
+    });
+    assert!(left.0.x > 0.0 && right.0.x < 0.0 && lid.0.y < 0.0 && floor.0 == DVec2::ZERO);
+    assert!(left.1.x < 0.0 && right.1.x > 0.0 && lid.1.y > 0.0 && floor.1.y < 0.0);
+    assert!(lid.2 > 0.0 && floor.2 == 0.0, "{lid:?}");
+
+    // A drum's torque times its spin is its work, and that is what steps say.
+    let mut drum = scene("drum");
+    drum.parameters.time_step_secs = 1e-3;
+    let mut run = drum.simulation().expect("a scene");
+    run.take_steps(200).expect("finite states");
+    let walls = Table::of_walls(&run.moment());
+    let [torque, spin, work] = ["torque", "omega", "work"].map(|name| numbers(&walls, name)[0]);
+    let wall_work = run.observables().wall_work;
+    assert!((work - wall_work).abs() < 1e-3 * wall_work.abs(), "{work} {wall_work}");
+    assert!((work + 1e-3 * torque * spin).abs() < 1e-9 * work.abs(), "{work} {torque} {spin}");
+}
+
+#[test]
+fn a_shear_without_fluctuations_has_no_kinetic_pressure() {
+    let run = scene("shear-periodic").simulation().expect("a scene");
+    let pressure = numbers(&Table::of_measures(&run.moment()), "kinetic_pressure")[0];
+    let energy = run.observables().kinetic_energy;
+    assert!(energy > 0.0 && pressure < 1e-12 * energy, "{pressure} N/m of {energy} J");
+}
+
+#[test]
+fn pairs_that_are_open_and_bear_nothing_are_no_contacts() {
+    let mut scene = scene("shear-periodic");
+    (scene.stepper, scene.parameters.bond) = (Stepper::Range, 0.0);
+    scene.parameters.time_step_secs = 1e-3;
+    let mut run = scene.simulation().expect("a scene");
+    run.take_steps(100).expect("finite states");
+    let contacts = Table::of_contacts(&run.moment());
+    let [gaps, forces] = ["gap", "normal_force"].map(|name| numbers(&contacts, name));
+    let touch = 1e-3 * run.world().mean_diameter;
+    assert!(!gaps.is_empty(), "contacts");
+    assert!(gaps.iter().zip(&forces).all(|(&gap, &force)| gap < touch || force != 0.0), "{gaps:?}");
+}
+
+#[test]
+fn a_grain_goes_straight_on_through_borders_where_it_is_unwrapped() {
+    let mut scene = scene("shear-periodic");
+    scene.grains.truncate(1);
+    let velocity = DVec2::new(3.0, -2.0);
+    scene.grains[0].velocity = velocity;
+    if let Some(cell) = &mut scene.periodic {
+        cell.shear_rate = 0.0;
+    }
+    let mut run = scene.simulation().expect("a scene");
+    let from = run.moment().grains[0].position;
+    run.take_steps(3000).expect("finite states");
+    let now = Table::of_grains(&run.moment());
+    let unwrapped = vectors(&now, ["x_unwrapped", "y_unwrapped"])[0];
+    let gone = run.time_secs() * velocity;
+    assert!((unwrapped - from).distance(gone) < 1e-9, "{unwrapped}");
+    assert!(vectors(&now, ["x", "y"])[0].distance(from) < 0.2, "it stays in the cell");
+}
+
+#[test]
+fn grains_without_weight_are_told_of() {
+    for (name, count) in [("shear", 228), ("shear-periodic", 224), ("biaxial", 300)] {
+        let facts = slump::config::scene_facts(&scene(name)).expect("facts").facts;
+        let said = facts.iter().find(|(name, _)| name == "weightless").map(|(_, said)| said);
+        let begins = format!("{count} of {count} grains: ");
+        assert!(said.is_some_and(|said| said.starts_with(&begins)), "{said:?}");
+    }
+    let facts = slump::config::scene_facts(&scene("pile")).expect("facts").facts;
+    assert!(facts.iter().all(|(name, _)| name != "weightless"));
+}
