@@ -44,7 +44,7 @@ fn what_does_not_go_with_a_model_is_refused_in_one_sentence() {
     ];
     refuses(&good, &cases);
     let tresca = SolverSettings { friction_model: FrictionModel::Tresca, ..good.solver };
-    assert!(tresca.by(Method::Newton).friction_model == FrictionModel::Coulomb);
+    assert_eq!(tresca.by(Method::Newton).model(false), FrictionModel::Coulomb);
 }
 
 #[test]

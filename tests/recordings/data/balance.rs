@@ -283,7 +283,8 @@ fn walls_tell_of_strain_force_and_work() {
     let walls = Table::of_walls(&run.moment());
     let [torque, spin, work] = ["torque", "omega", "work"].map(|name| numbers(&walls, name)[0]);
     let wall_work = run.observables().wall_work;
-    assert!((work - wall_work).abs() < 1e-3 * wall_work.abs(), "{work} {wall_work}");
+    // Steps take contacts where they began, tables where grains are at the end: they have moved by Δt·v of the radius.
+    assert!((work - wall_work).abs() < 5e-3 * wall_work.abs(), "{work} {wall_work}");
     assert!((work + 1e-3 * torque * spin).abs() < 1e-9 * work.abs(), "{work} {torque} {spin}");
 }
 
