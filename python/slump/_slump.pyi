@@ -45,11 +45,11 @@ class _Settings(TypedDict):
     substeps: int
     solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
     ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"]
-    stop: Literal["relative-change", "impulse-per-mass", "residual"]
+    stop: Literal["relative-change", "impulse-per-mass", "residual", "velocity-error"]
     tolerance: float
     max_sweeps: int
     warm_start: bool
-    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
+    friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     fallback: Literal["of-method", "none", "tresca"]
     islands: bool
@@ -74,11 +74,11 @@ class _Changes(TypedDict, total=False):
     substeps: int | None
     solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"] | None
     ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"] | None
-    stop: Literal["relative-change", "impulse-per-mass", "residual"] | None
+    stop: Literal["relative-change", "impulse-per-mass", "residual", "velocity-error"] | None
     tolerance: float | None
     max_sweeps: int | None
     warm_start: bool | None
-    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"] | None
+    friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"] | None
     model_solves: int | None
     fallback: Literal["of-method", "none", "tresca"] | None
     islands: bool | None
@@ -103,11 +103,11 @@ class _Attributes:
     substeps: int
     solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
     ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"]
-    stop: Literal["relative-change", "impulse-per-mass", "residual"]
+    stop: Literal["relative-change", "impulse-per-mass", "residual", "velocity-error"]
     tolerance: float
     max_sweeps: int
     warm_start: bool
-    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
+    friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     fallback: Literal["of-method", "none", "tresca"]
     islands: bool

@@ -31,8 +31,7 @@ pub(crate) fn solve<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let method = method_of(method)?;
     let stop = StopTest::Residual;
-    let settings =
-        SolverSettings { method, stop, tolerance, max_sweeps, ..SolverSettings::SWEEPS };
+    let settings = SolverSettings { method, stop, tolerance, max_sweeps, ..SolverSettings::SWEEPS };
     let mut problem = problem_of(problem)?;
     if without_bodies {
         problem.bodies = None;
