@@ -307,8 +307,7 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
     },
     Quantity {
         name: "error",
-        title: "error of velocities",
-        unit: "m/s",
+        title: "error of velocities (m/s)",
         logarithmic: true,
         value: |row| row.velocity_error,
         ..Quantity::PLAIN
