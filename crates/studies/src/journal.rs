@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
-use crate::output::{is_recognised, note_line};
+use crate::output::{in_use, is_recognised, note_line};
 use crate::runner::FinishedCase;
 
 const ENDING: &str = "jsonl";
@@ -149,10 +149,6 @@ pub(super) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
         Some(path) => Err(in_use(path)),
         None => Ok(paths),
     }
-}
-
-fn in_use(path: &Path) -> Error {
-    Error::file(path, "is being written by another program, which must end first")
 }
 
 /// Hexadecimal digits of a checksum: 64 bits, far more than damage needs.

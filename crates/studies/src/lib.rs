@@ -28,7 +28,6 @@ mod sweep;
 mod validate;
 
 pub use figures::{figure_names, reproduce};
-
 pub use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };

@@ -28,6 +28,7 @@ pub const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
 pub const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
 /// Times of Fig. 7, a row each, s.
 pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
+
 /// All runs, dearest first.
 ///
 /// # Errors

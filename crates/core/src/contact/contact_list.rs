@@ -119,7 +119,7 @@ impl ContactList {
     /// Counts an impulse of a contact along a normal, which may have turned since the contact was found.
     pub(crate) fn add_to_sums(&mut self, index: usize, normal: DVec2, impulse: Impulse) {
         let ContactColumns { contacts, found_in, .. } = &self.now;
-        self.sums.add(Transmitted::of(contacts[index], found_in[index], (normal, impulse)));
+        self.sums.add(Transmitted::of(contacts[index], found_in[index], normal, impulse));
     }
 
     /// What the pair of a contact has transmitted in a step that is summed up.
@@ -138,8 +138,8 @@ impl ContactList {
         let whole = !self.has_sums();
         let of_contact = |(index, (contact, impulse)): (usize, (&Contact, &Impulse))| {
             let impulse = if whole { *impulse } else { Impulse::default() };
-            let along = (contact.normal, impulse);
-            (Transmitted::of(*contact, found_in[index], along), Some(index))
+            let pair = Transmitted::of(*contact, found_in[index], contact.normal, impulse);
+            (pair, Some(index))
         };
         let of_contacts = contacts.iter().zip(impulses).enumerate().map(of_contact);
         let sums = self.sums.pairs.iter().map(|pair| (*pair, None));
@@ -152,12 +152,6 @@ impl ContactList {
             is_same
         });
         all
-    }
-
-    /// How many steps ago each pair was found to touch, or to be bonded, that has done so ever since, one
-    /// a contact; 0 where that was in the last step.
-    pub fn ages(&self) -> impl ExactSizeIterator<Item = u64> + '_ {
-        self.now.found_in.iter().map(|&found_in| self.step - found_in)
     }
 
     /// True until a contact's first solve. Contacts that a run begins with were found before its

@@ -21,7 +21,7 @@ pub(crate) struct Transmitted {
 
 impl Transmitted {
     /// What a contact transmits along a normal.
-    pub(crate) fn of(contact: Contact, found_in: u64, (normal, impulse): (DVec2, Impulse)) -> Self {
+    pub(crate) fn of(contact: Contact, found_in: u64, normal: DVec2, impulse: Impulse) -> Self {
         let vector = impulse.normal * normal + impulse.tangential * normal.perp();
         Self { contact, found_in, sums: impulse, vector }
     }

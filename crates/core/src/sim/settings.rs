@@ -170,7 +170,7 @@ impl Settings {
                 format!("coulomb where stepper is {stepper}: other models go with {readers}");
             return Err(Error::value("friction-model", model, allowed));
         }
-        if model.needs_shifted_cone() && cone != FrictionCone::Shifted {
+        if model.is_on_cone() && cone != FrictionCone::Shifted {
             let allowed = format!(
                 "shifted where friction-model is {model}: the compressive cone is not convex where contacts \
                  cohere; tresca takes both"

@@ -64,15 +64,10 @@ impl FrictionModel {
         matches!(self, Self::Tresca | Self::Desaxce)
     }
 
-    /// True where it allows the impulses of a cone, rather than those within bounds.
+    /// True where it allows the impulses of a cone, the shifted one alone. The compressive cone with cohesion is no convex set: its
+    /// convex hull is the shifted cone.
     pub(crate) fn is_on_cone(self) -> bool {
         matches!(self, Self::Associated | Self::Desaxce)
-    }
-
-    /// True where its cone is the shifted one alone. The compressive cone with cohesion is no convex set: its
-    /// convex hull is the shifted cone.
-    pub(crate) fn needs_shifted_cone(self) -> bool {
-        self.is_on_cone()
     }
 }
 

@@ -3,7 +3,8 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::network::Network;
-use crate::sim::Surroundings;
+use crate::contact::Grid;
+use crate::sim::{GrainState, Surroundings};
 
 /// How far grains tell of the mean flow, in mean diameters. Larger: a flow that bends counts as fluctuation; smaller: too
 /// few tell.
@@ -21,47 +22,77 @@ pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) ->
     let mass: f64 = network.grains().map(|(_, grain)| grain.mass).sum();
     let momentum: DVec2 = network.grains().map(|(_, grain)| grain.mass * grain.velocity).sum();
     let of_all = momentum / mass;
-    let mut grains = with_images(network, surroundings, reach);
-    grains.sort_by(|one, other| one.0.x.total_cmp(&other.0.x));
-    let of_grain = |(_, grain): (usize, &crate::sim::GrainState)| {
-        let first = grains.partition_point(|(place, _)| place.x < grain.position.x - reach);
-        let near = grains[first..].iter();
-        let near = near.take_while(|(place, _)| place.x <= grain.position.x + reach);
-        // Σ (1, x, y) ⊗ (1, x, y), and Σ (1, x, y) v for each component.
-        let (mut matrix, mut sums) = (DMat3::ZERO, [DVec3::ZERO; 2]);
-        for &(place, velocity) in near {
-            let offset = (place - grain.position) / reach;
-            if offset.length_squared() < 1.0 {
-                let row = DVec3::new(1.0, offset.x, offset.y);
-                matrix += DMat3::from_cols(row, offset.x * row, offset.y * row);
-                let beside = velocity - grain.velocity;
-                sums = [sums[0] + beside.x * row, sums[1] + beside.y * row];
+    let all = with_images(network, surroundings, reach);
+    let places: Vec<DVec2> = all.iter().map(|(place, _)| *place).collect();
+    let mut grid = Grid::default();
+    grid.rebuild::<2>(&places, reach);
+    let mut sums = vec![FlowSums::of_one(); network.len()];
+    grid.pairs::<2>(|one, other| {
+        let (one, other) = (one as usize, other as usize);
+        let offset = (all[other].0 - all[one].0) / reach;
+        if offset.length_squared() < 1.0 {
+            let velocity = all[other].1 - all[one].1;
+            for (of, sign) in [(one, 1.0), (other, -1.0)] {
+                if let Some(sums) = sums.get_mut(of) {
+                    sums.add(sign * offset, sign * velocity);
+                }
             }
         }
-        let count = matrix.x_axis.x;
-        // Grains in a row tell nothing of a flow across it.
-        let fitted = count >= LEAST && matrix.determinant() > 1e-6 * count.powi(3);
-        let (peculiar, part) = if fitted {
-            let inverse = matrix.inverse();
-            // At the grain itself, and less its own velocity.
-            let mean = sums.map(|sum| (inverse * sum).x);
-            (DVec2::from(mean), count / (count - 3.0))
-        } else {
-            (grain.velocity - of_all, 1.0)
+    });
+    let of_grain =
+        |((_, grain), FlowSums { matrix, velocities }): ((usize, &GrainState), FlowSums)| {
+            let count = matrix.x_axis.x;
+            // Grains in a row tell nothing of a flow across it.
+            let fitted = count >= LEAST && matrix.determinant() > 1e-6 * count.powi(3);
+            let (peculiar, part) = if fitted {
+                let inverse = matrix.inverse();
+                // At the grain itself, and less its own velocity.
+                let mean = velocities.map(|sum| (inverse * sum).x);
+                (DVec2::from(mean), count / (count - 3.0))
+            } else {
+                (grain.velocity - of_all, 1.0)
+            };
+            0.5 * grain.mass * part * peculiar.length_squared()
         };
-        0.5 * grain.mass * part * peculiar.length_squared()
-    };
-    network.grains().map(of_grain).sum()
+    network.grains().zip(sums).map(of_grain).sum()
 }
 
-/// Places and velocities of the grains, and of their images within reach of the cell.
+/// Sums over the neighbourhood of a grain, for the fit of a linear flow.
+#[derive(Clone, Copy)]
+struct FlowSums {
+    /// Σ (1, x, y) ⊗ (1, x, y), (x, y) from the grain, in reaches.
+    matrix: DMat3,
+    /// Σ (1, x, y) v for each component, v less that of the grain, m/s.
+    velocities: [DVec3; 2],
+}
+
+impl FlowSums {
+    /// Of the grain itself.
+    fn of_one() -> Self {
+        let mut sums = Self { matrix: DMat3::ZERO, velocities: [DVec3::ZERO; 2] };
+        sums.add(DVec2::ZERO, DVec2::ZERO);
+        sums
+    }
+
+    #[inline(always)]
+    fn add(&mut self, offset: DVec2, velocity: DVec2) {
+        let row = DVec3::new(1.0, offset.x, offset.y);
+        self.matrix += DMat3::from_cols(row, offset.x * row, offset.y * row);
+        let [along_x, along_y] = &mut self.velocities;
+        *along_x += velocity.x * row;
+        *along_y += velocity.y * row;
+    }
+}
+
+/// Places and velocities of the grains, then of their images within reach of the cell.
 fn with_images(network: &Network, surroundings: &Surroundings, reach: f64) -> Vec<(DVec2, DVec2)> {
-    let grains = network.grains().map(|(_, grain)| (grain.position, grain.velocity));
-    let Some(cell) = surroundings.periodic else { return grains.collect() };
+    let grains = || network.grains().map(|(_, grain)| (grain.position, grain.velocity));
+    let Some(cell) = surroundings.periodic else { return grains().collect() };
     let [low, high] = cell.borders_or([DVec2::NEG_INFINITY, DVec2::INFINITY]);
     let is_near = |place: DVec2| place.cmpge(low - reach).all() && place.cmple(high + reach).all();
-    let images = grains.flat_map(|(place, velocity)| {
-        cell.around().map(move |by| (place + by, velocity + cell.shear_rate * by.y * DVec2::X))
+    let images = grains().flat_map(|(place, velocity)| {
+        let others = cell.around().filter(|by| *by != DVec2::ZERO);
+        others.map(move |by| (place + by, velocity + cell.shear_rate * by.y * DVec2::X))
     });
-    images.filter(|&(place, _)| is_near(place)).collect()
+    grains().chain(images.filter(|&(place, _)| is_near(place))).collect()
 }

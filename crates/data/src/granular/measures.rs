@@ -1,6 +1,7 @@
 //! What a pile is around each of its grains, and as a whole.
 
 use super::MomentParts;
+use super::mean_flow::peculiar_energy;
 use super::stress::{self, Tensor};
 use crate::column_spec::{CellValue, ColumnSpec};
 use crate::sim::{ContactStatus, Moment};
@@ -187,7 +188,7 @@ impl PileMeasures {
     }
 
     pub(super) fn of_parts(parts: &MomentParts) -> Self {
-        let MomentParts { network, cells, coordination, forces, clusters, peculiar_energy } = parts;
+        let MomentParts { network, cells, coordination, forces, clusters, surroundings } = parts;
         let stress = stress::stress_of_contacts(network).over(cells.area);
         let fabric = stress::fabric(network);
         Self {
@@ -202,7 +203,7 @@ impl PileMeasures {
             pressure: stress.mean(),
             deviator: stress.deviator(),
             principal_direction: stress.direction(),
-            kinetic_pressure: peculiar_energy / cells.area,
+            kinetic_pressure: peculiar_energy(network, surroundings) / cells.area,
             fabric_xx: fabric.xx,
             fabric_xy: fabric.xy,
             fabric_yy: fabric.yy,

@@ -27,7 +27,7 @@ pub use measures::{GrainMeasures, PileMeasures};
 
 use self::cells::PowerCells;
 use self::network::{Clusters, Coordination, ForceDistribution, Network};
-use crate::sim::Moment;
+use crate::sim::{Moment, Surroundings};
 
 /// All that is measured of a moment.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -57,7 +57,7 @@ struct MomentParts<'a> {
     coordination: Coordination,
     forces: ForceDistribution,
     clusters: Clusters,
-    peculiar_energy: f64,
+    surroundings: &'a Surroundings,
 }
 
 impl<'a> MomentParts<'a> {
@@ -68,7 +68,7 @@ impl<'a> MomentParts<'a> {
             coordination: Coordination::of(&network),
             forces: ForceDistribution::of(&network),
             clusters: Clusters::of(&network),
-            peculiar_energy: mean_flow::peculiar_energy(&network, &moment.surroundings),
+            surroundings: &moment.surroundings,
             network,
         }
     }

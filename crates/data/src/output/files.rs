@@ -257,7 +257,7 @@ impl SharedFolder {
 
     /// That it has to be free first.
     pub fn in_use(&self) -> Error {
-        Error::file(&self.path, "is being written by another program, which must end first")
+        in_use(&self.path)
     }
 
     fn is_taken(&self, locked: std::result::Result<(), TryLockError>) -> bool {
@@ -270,6 +270,11 @@ impl SharedFolder {
             }
         }
     }
+}
+
+/// That another program has to end before a file or a folder is written to.
+pub fn in_use(path: &Path) -> Error {
+    Error::file(path, "is being written by another program, which must end first")
 }
 
 /// Some file systems have no locks; to write there at all is worth more.

@@ -9,7 +9,7 @@ mod terminal;
 
 pub use files::{
     FolderLock, Locked, PendingFile, SharedFolder, Texts, check_file, check_writable, final_name,
-    folder_of, remove_if_there, write_file,
+    folder_of, in_use, remove_if_there, write_file,
 };
 pub use growing::{GrowingFile, end_of_last};
 pub use recognised::{check_recognised, is_recognised};

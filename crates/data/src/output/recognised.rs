@@ -13,13 +13,15 @@ const MOST_OF_HEAD: u64 = 1 << 20;
 /// Bytes at the end of a Parquet file, where it says who wrote it.
 const TAIL: u64 = 4096;
 
+/// How lines of journals begin.
+const OF_JOURNAL: &[u8] = b"{\"checksum\":\"";
 /// How files begin that this program writes, and what else is found there.
 const BEGINNINGS: [(&[u8], &[u8]); 12] = [
     (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
     (b"{\n  \"program\": \"slump\",\n", b""),
     (b"{\n  \"about\": {\n", b"\n  \"program\": \"slump\",\n"),
     (b"{\n  \"study\": ", b"\n  \"fingerprint\": "),
-    (b"{\"checksum\":\"", b""),
+    (OF_JOURNAL, b""),
     (b"run,key,", b""),
     (b"step,time_secs,", b""),
     (b"# ", b"# column step: "),
@@ -64,8 +66,7 @@ fn recognised(path: &Path) -> std::io::Result<bool> {
         file.read_to_end(&mut tail)?;
         return Ok(is_left || has(&tail, b"slump "));
     }
-    let is_of_lines =
-        head.split(|&byte| byte == b'\n').any(|line| line.starts_with(BEGINNINGS[4].0));
+    let is_of_lines = head.split(|&byte| byte == b'\n').any(|line| line.starts_with(OF_JOURNAL));
     let is_blank = head.iter().all(u8::is_ascii_whitespace);
     Ok(is_blank
         || is_of_lines

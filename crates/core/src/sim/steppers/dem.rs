@@ -164,7 +164,7 @@ impl Elements {
             };
             sum.normal += impulse.normal;
             sum.tangential += impulse.tangential;
-            sums.add(Transmitted::of(*contact, found_in, (contact.normal, impulse)));
+            sums.add(Transmitted::of(*contact, found_in, contact.normal, impulse));
             let reduced = [impulse.normal / mass, impulse.tangential / mass];
             pushes.push((mass, reduced, of_wall));
             if j < bodies.len() {

@@ -196,7 +196,7 @@ impl<M: Model> StepProblem<M> {
             touches[row.j as usize] = true;
         }
         let masses = bodies.masses.iter().zip(&*touches);
-        *touching_mass = masses.filter(|(_, touches)| **touches).map(|(mass, _)| mass).sum();
+        *touching_mass = masses.map(|(mass, touches)| if *touches { *mass } else { 0.0 }).sum();
     }
 
     /// The mass of the bodies that have contacts, kg.

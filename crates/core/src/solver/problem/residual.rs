@@ -154,11 +154,12 @@ pub fn worst(one: f64, other: f64) -> f64 {
 // Compiled once, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
-    type Sum = (Sums, Measures);
-    let visit = |(sums, measures): &mut Sum,
+    type Sum = (Sums, GapSums, Measures);
+    let visit = |(sums, gap, measures): &mut Sum,
                  (number, row): (usize, &Row<_>),
                  motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
+        gap.add(problem, number, row, &motion);
         let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
         measures.compressive_contacts += u32::from(normal > 0.0);
@@ -173,10 +174,12 @@ pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
             measures.border_work += row.effective_mass * work;
         }
     };
-    let (sums, mut measures) = sum_of_rows(problem, visit, |all: &mut Sum, (sums, measures)| {
+    let join = |all: &mut Sum, (sums, gap, measures)| {
         all.0.add_all(sums);
-        all.1.add_rows(measures);
-    });
+        all.1.add_all(gap);
+        all.2.add_rows(measures);
+    };
+    let (sums, gap, mut measures) = sum_of_rows(problem, visit, join);
     if problem.has_moving_walls() {
         let [whole, tangential_part] = problem.surface_works();
         measures.wall_work = whole;
@@ -184,7 +187,7 @@ pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
     }
     let residual = sums.residual::<M>(problem);
     let model_residual = model_residual(problem, residual);
-    let velocity_error = velocity_error(problem).bound;
+    let velocity_error = gap.error(problem).bound;
     Measures { residual, model_residual, velocity_error, ..measures }
 }
 
@@ -307,15 +310,42 @@ impl VelocityError {
 
 /// The bound on the velocities' error of a problem, from its duality gap; 0 where nothing touches.
 pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
-    let model = problem.friction.model;
-    let on_cone = M::FRICTION && model.is_on_cone();
-    let coulomb = model == FrictionModel::Coulomb;
-    let add = |[gap, undone, impulses]: &mut [f64; 3],
-               (number, row): (usize, &Row<_>),
-               motion: RowVelocities| {
+    let add = |sums: &mut GapSums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
+        sums.add(problem, number, row, &motion);
+    };
+    sum_of_rows(problem, add, GapSums::add_all).error(problem)
+}
+
+/// What the duality gap is made of, and what it is held against, J.
+#[derive(Default)]
+struct GapSums {
+    gap: f64,
+    /// Σ m_ij (v^free)² with v^free as in the residual.
+    undone: f64,
+    /// Σ m_ij |λ|².
+    impulses: f64,
+}
+
+impl GapSums {
+    fn add_all(&mut self, other: Self) {
+        self.gap += other.gap;
+        self.undone += other.undone;
+        self.impulses += other.impulses;
+    }
+
+    #[inline(always)]
+    fn add<M: Model>(
+        &mut self,
+        problem: &StepProblem<M>,
+        number: usize,
+        row: &Row<M>,
+        motion: &RowVelocities,
+    ) {
+        let model = problem.friction.model;
+        let on_cone = M::FRICTION && model.is_on_cone();
         let [shifted, tangential] = row.impulse();
         let lagged = match problem.friction.now.get(number) {
-            Some(&lagged) if !coulomb => lagged,
+            Some(&lagged) if model != FrictionModel::Coulomb => lagged,
             _ if on_cone => 0.0,
             _ => problem.law.friction_bound(shifted),
         };
@@ -336,23 +366,22 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
         if M::FRICTION {
             squared += motion.free[1] * motion.free[1] / M::TANGENTIAL_COMPLIANCE;
         }
-        *gap += row.effective_mass * of_contact;
-        *undone += row.effective_mass * squared;
-        *impulses += row.effective_mass * (shifted * shifted + tangential * tangential);
-    };
-    let join = |all: &mut [f64; 3], part: [f64; 3]| {
-        all.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-    };
-    let [gap, undone, impulses] = sum_of_rows(problem, add, join);
-    let mass = problem.touching_mass();
-    // What rounding left of the impulses is no gap.
-    let is_rounding = gap.abs() <= ROUNDING * ROUNDING * impulses;
-    let squared = if is_rounding { 0.0 } else { gap / mass };
-    let fall = problem.fall_speed;
-    VelocityError {
-        // What rounding leaves of a gap of 0 may be negative; not a number stays none.
-        bound: if squared < 0.0 { 0.0 } else { squared.sqrt() },
-        scale: (fall * fall + if mass > 0.0 { undone / mass } else { 0.0 }).sqrt(),
+        self.gap += row.effective_mass * of_contact;
+        self.undone += row.effective_mass * squared;
+        self.impulses += row.effective_mass * (shifted * shifted + tangential * tangential);
+    }
+
+    fn error<M: Model>(&self, problem: &StepProblem<M>) -> VelocityError {
+        let mass = problem.touching_mass();
+        // What rounding left of the impulses is no gap.
+        let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;
+        let squared = if is_rounding { 0.0 } else { self.gap / mass };
+        let undone = if mass > 0.0 { self.undone / mass } else { 0.0 };
+        VelocityError {
+            // What rounding leaves of a gap of 0 may be negative; not a number stays none.
+            bound: if squared < 0.0 { 0.0 } else { squared.sqrt() },
+            scale: (problem.fall_speed * problem.fall_speed + undone).sqrt(),
+        }
     }
 }
 
