@@ -1,10 +1,10 @@
-//! Commands of studies: `sweep`, `reproduce`, `chart`, `stability` and `validate`.
+//! Commands of studies: `sweep`, `budget`, `reproduce`, `chart`, `stability` and `validate`.
 
 use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 
-use crate::config::parser_of;
+use crate::config::{Config, parser_of};
 use crate::error::{Error, Result};
 use crate::headless::draw_snapshots;
 use crate::output::{
@@ -16,8 +16,8 @@ use crate::study::stability::{
     CHALLENGES, Challenge, StabilityTable, count_of_maps, maps, picture,
 };
 use crate::study::{
-    ChartOptions, ChartPart, RunsTable, Shard, Study, SweepOptions, ValidateOptions, chart_speed,
-    experiment_names, figure_names, merge, reproduce, sweep, validate,
+    BudgetOptions, ChartOptions, ChartPart, RunsTable, Shard, Study, SweepOptions, ValidateOptions,
+    budget, chart_speed, experiment_names, figure_names, merge, reproduce, sweep, validate,
 };
 use crate::threads::make_threads;
 
@@ -44,6 +44,40 @@ pub(super) enum StudyCommand {
         redo: bool,
         #[command(subcommand)]
         command: Option<SweepAction>,
+    },
+    /// Tell how much of a number the grains make, how much the contact law, the time step and the solver
+    Budget {
+        // By far the largest of them.
+        #[command(flatten)]
+        config: Box<Config>,
+        /// A column of what a run measures (slump, max_overlap, coordination, …) at the end, or mean(x), min(x), max(x), total(x); several times for several [default: slump]
+        #[arg(long = "quantity", value_name = "X", help_heading = "Budget")]
+        quantities: Vec<String>,
+        /// Where the window of mean, min, max and total begins, simulated seconds [default: 0]
+        #[arg(
+            long = "from",
+            value_name = "SECONDS",
+            help_heading = "Budget",
+            allow_negative_numbers = true
+        )]
+        from_secs: Option<f64>,
+        /// Where it ends, and runs with it [default: the scene's duration]
+        #[arg(
+            long = "to",
+            value_name = "SECONDS",
+            help_heading = "Budget",
+            allow_negative_numbers = true
+        )]
+        to_secs: Option<f64>,
+        /// Half the width that every interval is to have, in the quantity's unit [default: a tenth of its value]
+        #[arg(long, value_name = "X", help_heading = "Budget", allow_negative_numbers = true)]
+        within: Option<f64>,
+        /// Time to take on all cores: 90s, 30min, 2h
+        #[arg(long = "cost", value_name = "TIME", help_heading = "Budget", default_value = "5min", value_parser = secs_of)]
+        cost_secs: f64,
+        /// Folder for the answer, its picture and tables; the same command goes on where it stopped
+        #[arg(long, value_name = "DIR", help_heading = "Budget")]
+        out: PathBuf,
     },
     /// Make the paper's figures, and those its conclusion asks for, from simulation alone
     Reproduce {
@@ -173,6 +207,12 @@ impl StudyCommand {
                 }
                 Ok(())
             }
+            Self::Budget { config, quantities, from_secs, to_secs, within, cost_secs, out } => {
+                let config = *config;
+                let options =
+                    BudgetOptions { config, quantities, from_secs, to_secs, within, cost_secs };
+                budget(&options, &out).map(drop)
+            }
             Self::Reproduce { figures, out, quick } => {
                 reproduce(&figures, &out, quick, draw_snapshots)
             }
@@ -201,6 +241,21 @@ impl StudyCommand {
             }),
         }
     }
+}
+
+/// Seconds of a time with its unit.
+fn secs_of(text: &str) -> std::result::Result<f64, String> {
+    let allowed = || "a time > 0 with its unit, as in 90s, 30min or 2h".to_owned();
+    let digits = text.find(|sign: char| sign.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(digits);
+    let unit = match unit {
+        "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(allowed()),
+    };
+    let secs = number.trim().parse().map(|number: f64| unit * number).map_err(|_| allowed())?;
+    if secs > 0.0 && secs.is_finite() { Ok(secs) } else { Err(allowed()) }
 }
 
 fn report_runs(table: &RunsTable, folder: &Path) {

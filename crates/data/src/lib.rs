@@ -7,7 +7,7 @@
 
 use slump_core::{contact, error, number, scene, setting, sim, solver, world};
 
-mod column_spec;
+pub mod column_spec;
 pub mod config;
 pub mod data;
 pub mod granular;

@@ -6,8 +6,9 @@
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 use slump_core::{contact, error, number, scene, sim, solver, world};
-use slump_data::{config, data, granular, input, output};
+use slump_data::{column_spec, config, data, granular, input, output};
 
+mod budget;
 pub mod chart;
 mod figures;
 mod journal;
@@ -27,6 +28,7 @@ mod statistics;
 mod sweep;
 mod validate;
 
+pub use budget::{BudgetOptions, ErrorBudget, Trust, budget, made as made_budget};
 pub use figures::{figure_names, reproduce};
 pub use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,

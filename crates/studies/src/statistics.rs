@@ -24,6 +24,11 @@ pub struct Mean {
 /// Mean of independent values with Student's interval. With fewer than two values the interval is
 /// all numbers.
 pub fn mean(values: &[f64]) -> Mean {
+    mean_with(values, CONFIDENCE)
+}
+
+/// The same with an interval that holds the true mean in another share of samples.
+pub(super) fn mean_with(values: &[f64], confidence: f64) -> Mean {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count.max(1) as f64;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -32,7 +37,7 @@ pub fn mean(values: &[f64]) -> Mean {
         return Mean { mean, low, high, standard_error: f64::INFINITY, count };
     };
     let standard_error = (squares / (count - 1) as f64 / count as f64).sqrt();
-    let half = student.inverse_cdf(0.5 + 0.5 * CONFIDENCE) * standard_error;
+    let half = student.inverse_cdf(0.5 + 0.5 * confidence) * standard_error;
     Mean { mean, low: mean - half, high: mean + half, standard_error, count }
 }
 

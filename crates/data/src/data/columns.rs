@@ -297,7 +297,8 @@ pub(super) fn frames(rows: &[FrameRow]) -> Table {
     Table::new("frames", FRAME_COLUMNS, rows, &[])
 }
 
-const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
+/// The columns of the table of steps.
+pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
     column("time_step", "s", "time step", Number(|row| row.time_step_secs)),

@@ -19,7 +19,7 @@ mod vtk;
 mod walls;
 
 pub use crate::scene::{DataSettings, FormatName};
-pub use columns::Observed;
+pub use columns::{Observed, STEP_COLUMNS};
 pub use format::{DEFAULT_FORMAT, Frame, RunFacts, check_format, formats_of};
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};
 pub use recording::{Recording, Times};

@@ -9,7 +9,7 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::prelude::*;
 use plotters::style::register_font;
 
-use super::{Axis, Chart, INK, Layer, Look, MapCell, Rgb, Sheet};
+use super::{Axis, Chart, INK, Layer, Look, MapCell, Point, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::png::png_of_rgb;
@@ -28,6 +28,8 @@ const CAPTION_LINE: u32 = 28;
 const BETWEEN: u32 = 8;
 const KEY: u32 = 70;
 const CAPTION_CHARACTER: u32 = 10;
+/// Half the height of a horizontal bar, in those of its row.
+const BAR: f64 = 0.32;
 /// Name that the font goes by; one that browsers know too, for the SVG.
 const FONT: &str = "sans-serif";
 
@@ -214,6 +216,21 @@ fn draw_layer<'a, DB: DrawingBackend + 'a>(
             });
             context.draw_series(rectangles).map_err(failed)?;
         }
+        Layer::Curve { points, colour, look: Look::Bars, .. } => {
+            let bar = |Point { x, y, .. }: &Point| {
+                let corners = [place(0.0, y - BAR), place(*x, y + BAR)];
+                Rectangle::new(corners, rgb(*colour).mix(0.6).filled())
+            };
+            context.draw_series(points.iter().map(bar)).map_err(failed)?;
+            let lines = points.iter().filter_map(|Point { y, interval, .. }| {
+                let (low, high) = (*interval)?;
+                Some(PathElement::new(
+                    vec![place(low, *y), place(high, *y)],
+                    rgb(INK).stroke_width(2),
+                ))
+            });
+            context.draw_series(lines).map_err(failed)?;
+        }
         Layer::Curve { points, colour, look, aside, .. } => {
             let colour = rgb(*colour);
             let width = place(chart.x.to, 1.0).0 - place(chart.x.from, 1.0).0;
@@ -261,6 +278,8 @@ fn strokes(look: Look, colour: RGBColor) -> (u32, Option<(u32, ShapeStyle)>) {
     match look {
         Look::Line(width) | Look::Dashes(width) => (width, None),
         Look::LineAndDots => (3, Some((5, colour.filled()))),
+        // In the legend; on a chart they are drawn by themselves.
+        Look::Bars => (14, None),
         Look::Dots(radius) => (0, Some((radius, colour.filled()))),
         Look::Rings(radius) => (0, Some((radius, colour.stroke_width(2)))),
     }
@@ -318,7 +337,8 @@ impl Ranged for AxisCoordinates {
 
 impl ValueFormatter<f64> for AxisCoordinates {
     fn format_ext(&self, place: &f64) -> String {
-        let span = self.range.end - self.range.start;
+        // An axis may run backwards.
+        let span = (self.range.end - self.range.start).abs();
         let mark = self.marks.iter().find(|(mark, _)| (mark - place).abs() < NEAR * span);
         mark.map_or(String::new(), |(_, words)| words.clone())
     }

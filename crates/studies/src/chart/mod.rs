@@ -88,6 +88,8 @@ pub enum Look {
     Rings(u32),
     /// A line through filled discs.
     LineAndDots,
+    /// Horizontal bars from 0 to x, whose intervals are in x.
+    Bars,
 }
 
 /// Something on a chart.

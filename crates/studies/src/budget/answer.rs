@@ -1,0 +1,711 @@
+//! What a budget says: rows, one a cause, and the paragraph that is read first.
+
+use serde::Serialize;
+
+use super::causes::{Cause, DIVISORS, Share, Variant, short};
+use super::collect::{Ended, Runs};
+use super::quantity::Quantity;
+use crate::statistics::Mean;
+
+/// What changing one thing adds to the value.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct CauseRow {
+    /// Whose share it is.
+    pub share: Share,
+    pub cause: &'static str,
+    /// What is changed to what.
+    pub changed: String,
+    /// Starts that both came to a number from.
+    pub starts: usize,
+    /// What it adds to the value, and its interval; none where it was not run, or came to nothing.
+    pub adds: Option<[f64; 3]>,
+    /// Part of its steps that were not solved as asked.
+    pub unsolved: f64,
+    /// Its time by that of the scene as it is. Another one on every machine, and every time.
+    pub cost: Option<f64>,
+    /// Why there is no number.
+    pub failure: Option<String>,
+    #[serde(skip)]
+    kind: Cause,
+}
+
+/// Whether a number is one of the grains and their law, rather than of the method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Trust {
+    /// Neither the method nor the choice of a law moves it by more than what was asked for.
+    Yes,
+    /// The method does not, the choice of a law does.
+    Mostly,
+    /// The method moves it by more.
+    No,
+    /// Intervals are too wide to say.
+    NotKnownYet,
+}
+
+impl Trust {
+    /// In a word or a few.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Yes => "yes",
+            Self::Mostly => "mostly",
+            Self::No => "no",
+            Self::NotKnownYet => "not known yet",
+        }
+    }
+}
+
+/// The budget of one quantity.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct QuantityBudget {
+    pub quantity: String,
+    pub unit: &'static str,
+    /// Half the width that intervals were to have, and the largest share of a method that does not count.
+    pub within: f64,
+    /// Starts of the scene as it is.
+    pub starts: usize,
+    /// Mean over starts, and its interval; none where runs came to nothing.
+    pub value: Option<[f64; 3]>,
+    /// Standard deviation between starts.
+    pub spread: Option<f64>,
+    /// Of the scene that was asked for, where it is none of the starts.
+    pub itself: Option<f64>,
+    /// What Δt → 0 adds, where that can be told.
+    pub limit_adds: Option<[f64; 3]>,
+    /// Time of Δt, Δt/2 and Δt/4 by that of Δt, and what each adds beside Δt/8.
+    pub left_by_time_step: Vec<(f64, [f64; 3])>,
+    pub trust: Trust,
+    pub answer: String,
+    pub causes: Vec<CauseRow>,
+}
+
+/// All that a budget is made of, but its runs.
+pub(super) struct Design<'a> {
+    pub variants: &'a [Variant],
+    /// True where starts are piles of other seeds; else grains are moved by next to nothing.
+    pub has_seeds: bool,
+    pub time_step_secs: f64,
+}
+
+/// Contrasts of successive halvings that are this part of the width count as none.
+const SLACK: f64 = 0.25;
+/// Spread between starts that are moved by next to nothing, as a part of the width, that is no chaos.
+const SMOOTH: f64 = 0.01;
+
+pub(super) fn budget_of(
+    runs: &Runs,
+    ended: Ended,
+    design: &Design<'_>,
+    (number, quantity): (usize, &Quantity),
+    itself: Option<f64>,
+) -> QuantityBudget {
+    let within = runs.within[number];
+    let rows: Vec<CauseRow> = design
+        .variants
+        .iter()
+        .zip(1..)
+        .map(|(variant, series)| row(runs, variant, series, number))
+        .collect();
+    let value = runs.interval(0, number);
+    let failure = runs.failure(0, number);
+    let mut budget = QuantityBudget {
+        quantity: quantity.name.clone(),
+        unit: quantity.unit,
+        within,
+        starts: value.count,
+        value: failure.is_none().then_some(ends(&value)),
+        spread: failure.is_none().then(|| value.standard_error * (value.count as f64).sqrt()),
+        itself,
+        limit_adds: None,
+        left_by_time_step: Vec::new(),
+        trust: Trust::NotKnownYet,
+        answer: String::new(),
+        causes: if failure.is_none() { rows } else { Vec::new() },
+    };
+    if let Some(failure) = failure {
+        budget.answer =
+            format!("{} has no value: of the scene as it is, {failure}.", quantity.name);
+        return budget;
+    }
+    budget.limit_adds = limit(runs, design, number).map(|limit| ends(&limit));
+    if let Some([half, quarter, eighth]) = halvings(runs, design, number) {
+        let left = |series: usize| {
+            let rest = runs.over_starts(&[series, eighth], number, |values| values[0] - values[1]);
+            (runs.cost_ratio(series), ends(&rest))
+        };
+        budget.left_by_time_step = [0, half, quarter].map(left).to_vec();
+    }
+    budget.trust = budget.judged();
+    budget.answer = Words { budget: &budget, runs, ended, design, number }.paragraph();
+    budget
+}
+
+fn ends(mean: &Mean) -> [f64; 3] {
+    [mean.mean, mean.low, mean.high]
+}
+
+fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseRow {
+    let ran = &runs.all[series];
+    let failure = match ran.is_empty() {
+        true => Some("that does not fit into the time".to_owned()),
+        false => runs.failure(series, quantity),
+    };
+    let adds = runs.interval(series, quantity);
+    CauseRow {
+        share: variant.cause.share(),
+        cause: variant.cause.words(),
+        changed: variant.label.clone(),
+        starts: if failure.is_none() { adds.count } else { 0 },
+        adds: failure.is_none().then_some(ends(&adds)),
+        unsolved: ran.iter().map(|ran| ran.values.unsolved).sum::<f64>() / ran.len().max(1) as f64,
+        cost: (!ran.is_empty()).then(|| runs.cost_ratio(series)),
+        failure,
+        kind: variant.cause,
+    }
+}
+
+/// Series of Δt/2, Δt/4 and Δt/8, where all were run.
+fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize; 3]> {
+    let all = design.variants.iter().zip(1..);
+    let of_steps = all.filter(|(variant, series)| {
+        variant.cause == Cause::TimeStep
+            && !runs.all[*series].is_empty()
+            && runs.failure(*series, quantity).is_none()
+    });
+    of_steps.map(|(_, series)| series).collect::<Vec<_>>().try_into().ok()
+}
+
+/// What Δt → 0 adds, by Richardson's extrapolation.
+///
+/// With an error a Δt^p, the changes q₁ = Q(Δt/2) − Q(Δt), q₂ and q₃ of three halvings fall by 2^p each, and what is still
+/// to come after the third is q₃/(2^p − 1). For p = 1 and 2 in turn it is held that q₂ − q₁/2^p and q₃ − q₂/2^p may be 0; where
+/// neither may, the value does not settle so, and no limit is given.
+fn limit(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<Mean> {
+    let [half, quarter, eighth] = halvings(runs, design, quantity)?;
+    let slack = SLACK * runs.within[quantity];
+    let of = |of: &dyn Fn([f64; 4]) -> f64| {
+        let series = [0, half, quarter, eighth];
+        runs.over_starts(&series, quantity, |q| of([q[0], q[1], q[2], q[3]]))
+    };
+    let may_be_none = |mean: &Mean| mean.low <= slack && mean.high >= -slack;
+    [2.0, 4.0].into_iter().find_map(|factor| {
+        let first = of(&|[q, q2, q4, _]| (q4 - q2) - (q2 - q) / factor);
+        let second = of(&|[_, q2, q4, q8]| (q8 - q4) - (q4 - q2) / factor);
+        let to_come = of(&|[q, _, q4, q8]| q8 - q + (q8 - q4) / (factor - 1.0));
+        (may_be_none(&first) && may_be_none(&second)).then_some(to_come)
+    })
+}
+
+fn is_inside([_, low, high]: [f64; 3], within: f64) -> bool {
+    low >= -within && high <= within
+}
+
+fn is_outside([_, low, high]: [f64; 3], within: f64) -> bool {
+    low > within || high < -within
+}
+
+fn is_seen([_, low, high]: [f64; 3]) -> bool {
+    low > 0.0 || high < 0.0
+}
+
+impl QuantityBudget {
+    /// The smallest time step that came to a number, else the smallest.
+    fn smallest_step(&self) -> Option<&CauseRow> {
+        let of_steps = || self.causes.iter().filter(|row| row.kind == Cause::TimeStep);
+        of_steps().rfind(|row| row.adds.is_some()).or_else(|| of_steps().next_back())
+    }
+
+    fn judged(&self) -> Trust {
+        let of = |share: Share| self.causes.iter().filter(move |row| row.share == share);
+        let is_any_outside =
+            |share| of(share).filter_map(|row| row.adds).any(|ends| is_outside(ends, self.within));
+        // Of the time step the smallest shows most of the whole effect. What a scene does not survive under another law is
+        // no doubt about its own.
+        let smallest = self.smallest_step().map(|row| &row.changed);
+        let counts = |row: &&CauseRow| match row.kind {
+            Cause::TimeStep => Some(&row.changed) == smallest,
+            kind => kind.share() == Share::Method || row.adds.is_some(),
+        };
+        let is_all_inside = |share| {
+            of(share)
+                .filter(counts)
+                .all(|row| row.adds.is_some_and(|ends| is_inside(ends, self.within)))
+        };
+        match (is_all_inside(Share::Method), is_all_inside(Share::Law)) {
+            _ if is_any_outside(Share::Method) => Trust::No,
+            (true, true) => Trust::Yes,
+            (true, false) if is_any_outside(Share::Law) => Trust::Mostly,
+            _ => Trust::NotKnownYet,
+        }
+    }
+}
+
+/// A number with as many decimals as half an interval has meaning for.
+fn rounded(number: f64, half: f64) -> String {
+    if !(half > 0.0 && half.is_finite()) {
+        return short(number);
+    }
+    // Two digits of what begins with 1, else one.
+    let power = half.log10().floor();
+    let digits = if half / 10f64.powf(power) < 1.95 { 1.0 } else { 0.0 };
+    let decimals = digits - power;
+    if (0.0..=4.0).contains(&decimals) {
+        let text = format!("{number:.*}", decimals as usize);
+        let is_zero = text.chars().all(|sign| matches!(sign, '-' | '0' | '.'));
+        return if is_zero { text.trim_start_matches('-').to_owned() } else { text };
+    }
+    if (-4.0..0.0).contains(&decimals) {
+        let unit = 10f64.powf(-decimals);
+        return format!("{:.0}", (number / unit).round() * unit);
+    }
+    let digits = (number.abs().max(half).log10().floor() + decimals).max(0.0);
+    format!("{number:.*e}", digits as usize)
+}
+
+/// One, another and a third.
+fn listed(names: &[String]) -> String {
+    match names.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+struct Words<'a> {
+    budget: &'a QuantityBudget,
+    runs: &'a Runs,
+    ended: Ended,
+    design: &'a Design<'a>,
+    number: usize,
+}
+
+impl Words<'_> {
+    fn paragraph(&self) -> String {
+        let mut said = vec![self.of_value()];
+        said.extend(self.of_time_step());
+        let smallest = self.budget.smallest_step().map(|row| &row.changed);
+        let is_said = |row: &&CauseRow| {
+            row.kind == Cause::TimeStep && (row.adds.is_some() || Some(&row.changed) != smallest)
+        };
+        let others = self.budget.causes.iter().filter(|row| !is_said(row));
+        let (mut seen, mut unseen, mut missing) = (Vec::new(), Vec::new(), Vec::new());
+        for row in others {
+            match row.adds {
+                Some(ends) if is_seen(ends) => {
+                    seen.push((ends[0].abs(), self.of_effect(row, ends)))
+                }
+                Some([_, low, high]) => {
+                    let most = low.abs().max(high.abs());
+                    let of = self.of_unseen(row);
+                    unseen.push(if most == 0.0 {
+                        of
+                    } else {
+                        format!("{of} (at most {})", self.number(most, most))
+                    });
+                }
+                None => missing.push(row),
+            }
+        }
+        // The largest first.
+        seen.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        said.extend(seen.into_iter().map(|(_, words)| words));
+        if !unseen.is_empty() {
+            said.push(format!("No effect is seen of {}.", listed(&unseen)));
+        }
+        said.extend(self.of_missing(missing));
+        said.push(self.of_trust());
+        said.extend(self.of_cost());
+        said.push(self.of_end());
+        said.join(" ")
+    }
+
+    /// A number whose interval has this half width, which is no better known than what counts as none.
+    fn number(&self, number: f64, half: f64) -> String {
+        rounded(number, half.max(SMOOTH * self.budget.within))
+    }
+
+    fn with_interval(&self, mean: f64, half: f64) -> String {
+        let mean = self.number(mean, half);
+        if half.is_infinite() || half <= SMOOTH * self.budget.within {
+            return mean;
+        }
+        format!("{mean} ± {}", rounded(half, half))
+    }
+
+    fn unit(&self) -> String {
+        let unit = self.budget.unit;
+        if unit.is_empty() { String::new() } else { format!(" {unit}") }
+    }
+
+    fn of_value(&self) -> String {
+        let QuantityBudget { quantity, starts, spread, itself, .. } = self.budget;
+        let [mean, _, high] = self.budget.value.unwrap_or([f64::NAN; 3]);
+        let (value, unit, spread) =
+            (self.with_interval(mean, high - mean), self.unit(), spread.unwrap_or(0.0));
+        if self.design.has_seeds {
+            let itself = itself.map_or(String::new(), |itself| {
+                format!(" The pile that was asked for has {}.", rounded(itself, spread))
+            });
+            return format!(
+                "{quantity} is {value}{unit} over {starts} piles that differ in their seed; single ones scatter by {}.{itself}",
+                rounded(spread, spread)
+            );
+        }
+        if spread <= SMOOTH * self.budget.within {
+            return format!(
+                "{quantity} is {}{unit}, and all but the same where grains start 1e-9 d elsewhere.",
+                self.number(mean, 0.0)
+            );
+        }
+        format!(
+            "{quantity} is {value}{unit} over {starts} starts that differ by 1e-9 d; single ones scatter by {}: the scene is \
+             chaotic.",
+            rounded(spread, spread)
+        )
+    }
+
+    fn of_time_step(&self) -> Option<String> {
+        let smallest = self.budget.smallest_step()?;
+        let [mean, low, high] = smallest.adds?;
+        let (value, unit) = (self.value_of(mean, high - mean), self.unit());
+        let effect = self.effect([-mean, -high, -low]);
+        let mut said =
+            format!("The time step {effect}: at {} the value is {value}{unit}", smallest.changed);
+        said += &match self.budget.limit_adds {
+            Some([mean, low, high]) if is_seen([mean, low, high]) => {
+                let [base, ..] = self.budget.value.unwrap_or([f64::NAN; 3]);
+                format!(", at Δt → 0 {}{unit}.", self.with_interval(base + mean, high - mean))
+            }
+            Some(_) => ".".into(),
+            None if halvings(self.runs, self.design, self.number).is_some() => {
+                "; it does not settle as Δt falls, and no value at Δt → 0 is given.".into()
+            }
+            None => ".".into(),
+        };
+        Some(said)
+    }
+
+    /// What the value is with something added to it. The mean value's own scatter is not that of a paired difference, which
+    /// is given.
+    fn value_of(&self, adds: f64, half: f64) -> String {
+        let [mean, ..] = self.budget.value.unwrap_or([f64::NAN; 3]);
+        self.number(mean + adds, half)
+    }
+
+    /// What is said of an effect, by what it adds.
+    fn effect(&self, [mean, low, high]: [f64; 3]) -> String {
+        let (half, unit) = (high - mean, self.unit());
+        let farthest = low.abs().max(high.abs());
+        if farthest == 0.0 {
+            "changes nothing".into()
+        } else if !is_seen([mean, low, high]) {
+            format!(
+                "has no effect that is seen (at most {}{unit})",
+                self.number(farthest, farthest)
+            )
+        } else if mean > 0.0 {
+            format!("adds {}{unit}", self.with_interval(mean, half))
+        } else {
+            format!("takes {}{unit} away", self.with_interval(-mean, half))
+        }
+    }
+
+    fn of_effect(&self, row: &CauseRow, [mean, low, high]: [f64; 3]) -> String {
+        let effect = match row.kind {
+            // Left undone, it adds what doing it takes away.
+            Cause::Unsolved => self.effect([-mean, -high, -low]),
+            _ => self.effect([mean, low, high]),
+        };
+        match row.kind {
+            Cause::Unsolved => format!("What steps leave unsolved {effect}."),
+            Cause::ContactLaw => {
+                format!("The contact law {} in place of this one {effect}.", row.changed)
+            }
+            Cause::FrictionModel => format!("Friction by {} {effect}.", row.changed),
+            Cause::NumberOfGrains => format!("A pile of {} {effect}.", row.changed),
+            Cause::Packing => format!("A pile {} {effect}.", row.changed),
+            Cause::RestitutionThreshold => format!("{} {effect}.", row.changed),
+            Cause::Cone | Cause::TimeStep => format!("The {} {effect}.", row.changed),
+        }
+    }
+
+    fn of_unseen(&self, row: &CauseRow) -> String {
+        match row.kind {
+            Cause::Unsolved => row.cause.to_owned(),
+            Cause::ContactLaw => format!("the contact law {}", row.changed),
+            Cause::FrictionModel => format!("friction by {}", row.changed),
+            Cause::NumberOfGrains => format!("a pile of {}", row.changed),
+            Cause::Packing => format!("a pile {}", row.changed),
+            Cause::RestitutionThreshold => {
+                let mut letters = row.changed.chars();
+                let first = letters.next().map(|letter| letter.to_ascii_lowercase());
+                first.into_iter().chain(letters).collect()
+            }
+            Cause::Cone | Cause::TimeStep => format!("the {}", row.changed),
+        }
+    }
+
+    /// What is not known, by its reason.
+    fn of_missing(&self, rows: Vec<&CauseRow>) -> Vec<String> {
+        let mut by_reason: Vec<(&str, Vec<String>)> = Vec::new();
+        for row in rows {
+            let reason = row.failure.as_deref().unwrap_or_default();
+            let name = if row.kind == Cause::TimeStep {
+                row.cause.to_owned()
+            } else {
+                self.of_unseen(row)
+            };
+            match by_reason.iter_mut().find(|(known, _)| *known == reason) {
+                Some((_, names)) => names.push(name),
+                None => by_reason.push((reason, vec![name])),
+            }
+        }
+        let said = |(reason, names): (&str, Vec<String>)| {
+            format!("Nothing is known of {}: {reason}.", listed(&names))
+        };
+        by_reason.into_iter().map(said).collect()
+    }
+
+    fn of_trust(&self) -> String {
+        let within = format!("{}{}", short(self.budget.within), self.unit());
+        match self.budget.trust {
+            Trust::Yes => format!(
+                "So neither the method nor the choice of a law moves it by more than {within}."
+            ),
+            Trust::Mostly => format!(
+                "So the method moves it by no more than {within}; the choice of a law does."
+            ),
+            Trust::No => format!("So the method moves it by more than {within}."),
+            Trust::NotKnownYet => {
+                format!("Whether the method moves it by more than {within} is not known yet.")
+            }
+        }
+    }
+
+    /// The cheapest of the settings that were tried whose part of the value is small enough.
+    fn of_cost(&self) -> Option<String> {
+        if self.budget.trust != Trust::No {
+            return None;
+        }
+        let within = self.budget.within;
+        let tried = self.budget.left_by_time_step.iter().zip([1].into_iter().chain(DIVISORS));
+        let mut enough = tried.filter(|((_, left), _)| is_inside(*left, within));
+        let said = format!("{}{}", short(within), self.unit());
+        Some(match enough.next() {
+            _ if self.budget.left_by_time_step.is_empty() => return None,
+            Some((_, 1)) => return None,
+            Some(((cost, _), divisor)) => format!(
+                "For the time step's part to stay below {said}: Δt ≤ {} s, {} times the cost.",
+                short(self.design.time_step_secs / f64::from(divisor)),
+                rounded(*cost, 0.3)
+            ),
+            None => format!(
+                "No time step that was tried is known to be small enough for its part to stay below {said}."
+            ),
+        })
+    }
+
+    fn of_end(&self) -> String {
+        let percent = 100.0 * (1.0 - super::collect::OUTSIDE);
+        let all = format!("All intervals hold together in {percent:.0} % of budgets.");
+        match self.ended {
+            Ended::Within => all,
+            Ended::Stopped => format!("{all} More is on its way."),
+            Ended::Cost | Ended::Failed => {
+                let widest =
+                    (0..self.runs.all.len()).filter(|&series| !self.runs.all[series].is_empty());
+                let widest = widest.max_by(|one, other| {
+                    self.runs.excess(*one).total_cmp(&self.runs.excess(*other))
+                });
+                let what = match widest {
+                    Some(series) if self.runs.excess(series) > 1.0 => {
+                        let name = series.checked_sub(1).map_or("the value itself".into(), |one| {
+                            let variant = &self.design.variants[one];
+                            format!("{} ({})", variant.cause.words(), variant.label)
+                        });
+                        format!(
+                            " the widest interval, of {name}, is {} times as wide as asked for",
+                            rounded(self.runs.excess(series), 0.3)
+                        )
+                    }
+                    _ => " not all could be run".into(),
+                };
+                format!("{all} The time was spent:{what}.")
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    use super::super::causes::variants;
+    use super::super::collect::{Job, Limits, Ran, collect};
+    use super::super::starts::RunValues;
+    use super::*;
+    use crate::scene::{NewPile, built_in};
+
+    /// A budget of made-up runs of a cohesive pile: `of` is what a variant adds to the value at Δt → 0, and runs scatter by
+    /// `scatter` beside what starts have in common.
+    fn made_up(
+        seed: u64,
+        scatter: f64,
+        limits: Limits,
+        of: &(impl Fn(Option<&Variant>) -> f64 + Sync),
+    ) -> QuantityBudget {
+        let mut scene = built_in("pile").unwrap();
+        scene.parameters.bond = 20.0;
+        let variants = variants(&scene, Some(&NewPile::default()), true);
+        let run = |Job { series, start }: Job| {
+            // The sum of twelve uniform numbers is as good as normal here.
+            let normal = |number: u64| {
+                let mut random = Pcg64::seed_from_u64(number);
+                (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>()
+            };
+            let own = normal(seed * 1_000_003 + 1000 * series as u64 + start as u64);
+            let shared = normal(seed * 1_000_003 + 999_000 + start as u64);
+            let added = of(series.checked_sub(1).map(|one| &variants[one]));
+            let values = vec![Some(0.3 + added + 0.1 * shared + scatter * own)];
+            let cost = series.checked_sub(1).map_or(1.0, |one| variants[one].cost);
+            Ok(Ran {
+                values: RunValues { values, failure: None, unsolved: 0.0, run_secs: cost },
+                secs: cost,
+            })
+        };
+        let costs = [1.0].into_iter().chain(variants.iter().map(|variant| variant.cost)).collect();
+        let design = Design { variants: &variants, has_seeds: true, time_step_secs: 1e-3 };
+        let (runs, ended) =
+            collect(costs, 1, limits, &run, &mut |_| ControlFlow::Continue(())).unwrap();
+        let quantity = "slump".parse().unwrap();
+        budget_of(&runs, ended, &design, (0, &quantity), None)
+    }
+
+    const FREE: Limits = Limits { cost_secs: f64::INFINITY, within: Some(0.05) };
+    const BUDGETS: u64 = 400;
+
+    fn share(holds: impl Fn(u64) -> bool) -> f64 {
+        (0..BUDGETS).filter(|seed| holds(*seed)).count() as f64 / BUDGETS as f64
+    }
+
+    #[test]
+    fn where_nothing_has_an_effect_at_most_five_of_a_hundred_budgets_see_one() {
+        let sees_any = |seed| {
+            let budget = made_up(seed, 0.03, FREE, &|_| 0.0);
+            assert!(budget.causes.iter().all(|row| row.starts >= 4), "{}", budget.answer);
+            budget.causes.iter().filter_map(|row| row.adds).any(is_seen)
+                || budget.limit_adds.is_some_and(is_seen)
+        };
+        let share = share(sees_any);
+        // Of 400 budgets, 5 % are 20 ± 4.4.
+        assert!(share <= 0.07, "{share} of budgets see an effect where there is none");
+    }
+
+    #[test]
+    fn known_effects_come_out_as_they_are_in_95_of_100_budgets() {
+        let step = |variant: Option<&Variant>| {
+            variant.map_or(1e-3, |one| one.settings.parameters.time_step_secs)
+        };
+        let effect = |variant: Option<&Variant>| {
+            let of_step = -100.0 * step(variant);
+            of_step
+                + match variant.map(|variant| variant.cause) {
+                    Some(Cause::Cone) => 0.2,
+                    Some(Cause::Unsolved) => -0.08,
+                    _ => 0.0,
+                }
+        };
+        let holds =
+            |[_, low, high]: [f64; 3], true_value: f64| low <= true_value && true_value <= high;
+        let all_hold = |seed| {
+            let budget = made_up(seed, 0.03, FREE, &effect);
+            let expected = |row: &CauseRow| match row.kind {
+                Cause::TimeStep => {
+                    0.1 - 100.0
+                        * 1e-3
+                        * row.changed["Δt ".len()..].trim_end_matches(" s").parse::<f64>().unwrap()
+                        / 1e-3
+                }
+                Cause::Cone => 0.2,
+                Cause::Unsolved => -0.08,
+                _ => 0.0,
+            };
+            assert_ne!(budget.trust, Trust::Yes, "{}", budget.answer);
+            budget.causes.iter().all(|row| holds(row.adds.unwrap(), expected(row)))
+                && budget.limit_adds.is_some_and(|limit| holds(limit, 0.1))
+        };
+        let share = share(all_hold);
+        assert!(share >= 0.93, "all intervals hold in {share} of budgets");
+    }
+
+    #[test]
+    fn answers_say_what_was_found() {
+        let limits = Limits { within: Some(0.02), ..FREE };
+        let budget = made_up(1, 1e-3, limits, &|variant| match variant.map(|one| one.cause) {
+            Some(Cause::ContactLaw) => 0.1,
+            _ => 0.0,
+        });
+        assert_eq!(budget.trust, Trust::Mostly, "{}", budget.answer);
+        assert!(
+            budget.answer.contains("The contact law range in place of this one adds 0.1"),
+            "{}",
+            budget.answer
+        );
+        assert!(
+            budget.answer.contains("No effect is seen of what steps leave unsolved (at most 0.0"),
+            "{}",
+            budget.answer
+        );
+        let budget = made_up(1, 1e-3, limits, &|_| 0.0);
+        assert_eq!(budget.trust, Trust::Yes, "{}", budget.answer);
+        let second_order = |variant: Option<&Variant>| {
+            let step = variant.map_or(1e-3, |one| one.settings.parameters.time_step_secs);
+            0.1 * (step / 1e-3) * (step / 1e-3)
+        };
+        let budget = made_up(1, 1e-5, limits, &second_order);
+        let [limit, ..] = budget.limit_adds.expect("a limit");
+        assert!((limit + 0.1).abs() < 1e-4, "{limit}");
+        assert!(budget.answer.contains("Δt ≤ 2.5e-4 s, 4.0 times the cost"), "{}", budget.answer);
+        // What goes on changing by as much at each halving has no limit.
+        let logarithmic = |variant: Option<&Variant>| {
+            0.05 * variant.map_or(1e-3, |one| one.settings.parameters.time_step_secs).ln()
+        };
+        let budget = made_up(1, 1e-5, limits, &logarithmic);
+        assert_eq!(budget.limit_adds, None);
+        assert!(budget.answer.contains("does not settle as Δt falls"), "{}", budget.answer);
+        assert!(
+            budget.answer.contains("No time step that was tried is known to be small enough"),
+            "{}",
+            budget.answer
+        );
+    }
+
+    #[test]
+    fn a_spent_time_is_told_with_the_widest_interval() {
+        let limits = Limits { cost_secs: 60.0, within: Some(1e-3) };
+        let budget = made_up(1, 0.05, limits, &|_| 0.0);
+        assert!(
+            budget.answer.contains("The time was spent: the widest interval, of"),
+            "{}",
+            budget.answer
+        );
+        assert!(budget.causes.iter().any(|row| row.failure.is_some()), "{:?}", budget.causes);
+        assert_eq!(budget.trust, Trust::NotKnownYet);
+    }
+
+    #[test]
+    fn numbers_have_the_digits_that_their_intervals_leave() {
+        let all = [
+            (0.234_56, 0.0212, "0.23 ± 0.02"),
+            (0.234_56, 0.0123, "0.235 ± 0.012"),
+            (4.717e-5, 2.29e-5, "5e-5 ± 2e-5"),
+            (1234.5, 21.0, "1230 ± 20"),
+            (-0.001, 0.05, "0.00 ± 0.05"),
+        ];
+        for (mean, half, said) in all {
+            assert_eq!(self.with_interval(mean, half), said);
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! What a number may owe itself to, in a scene: which of it can matter there, and how it is tried.
+
+use crate::scene::{Deposition, NewPile, Scene};
+use crate::sim::{Settings, Stepper};
+use crate::solver::{Fallback, FrictionModel, Method, StopTest};
+use crate::world::FrictionCone;
+
+/// Whose share it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Share {
+    /// Of the grains: how many, and how they were put down.
+    Grains,
+    /// Of the laws that contacts obey.
+    Law,
+    /// Of the method: the time step, and what steps leave unsolved.
+    Method,
+}
+
+impl Share {
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Grains => "grains",
+            Self::Law => "law",
+            Self::Method => "method",
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cause {
+    TimeStep,
+    Unsolved,
+    ContactLaw,
+    Cone,
+    FrictionModel,
+    RestitutionThreshold,
+    Packing,
+    NumberOfGrains,
+}
+
+impl Cause {
+    pub(crate) fn share(self) -> Share {
+        match self {
+            Self::TimeStep | Self::Unsolved => Share::Method,
+            Self::ContactLaw | Self::Cone | Self::FrictionModel | Self::RestitutionThreshold => {
+                Share::Law
+            }
+            Self::Packing | Self::NumberOfGrains => Share::Grains,
+        }
+    }
+
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::TimeStep => "time step",
+            Self::Unsolved => "what steps leave unsolved",
+            Self::ContactLaw => "contact law",
+            Self::Cone => "cone of friction",
+            Self::FrictionModel => "friction model",
+            Self::RestitutionThreshold => "restitution threshold",
+            Self::Packing => "packing",
+            Self::NumberOfGrains => "number of grains",
+        }
+    }
+}
+
+/// The scene with one thing changed.
+#[derive(Clone, Debug)]
+pub(crate) struct Variant {
+    pub cause: Cause,
+    /// What it is changed to, in words.
+    pub label: String,
+    pub settings: Settings,
+    /// Other grains, where these are what is changed.
+    pub pile: Option<NewPile>,
+    /// What a run of it may cost, in runs of the scene as it is: until it is measured.
+    pub cost: f64,
+}
+
+/// Parts that Δt is divided by.
+pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
+/// How much better steps are solved, to see what they leave unsolved: a bound on velocities of 1e-7 √(g d) is more than
+/// rounding lets some steps have.
+const TIGHTER: f64 = 1e-2;
+/// The residual that Coulomb's law is solved to, to see the same.
+const TIGHTEST_RESIDUAL: f64 = 1e-9;
+/// Below about this many g·Δt restitution stands for no bounce that anyone could see.
+const THRESHOLD: f64 = 2.0;
+
+/// All that can matter to a scene, and that it takes. `pile` is what its grains are made of, where they are made;
+/// `resizes` is true where their number can be changed.
+pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
+    let base = scene.settings();
+    let mut all = Vec::new();
+    let mut add = |cause, label: String, settings: Settings, cost| {
+        let mut changed = scene.clone();
+        changed.set_settings(settings);
+        // What a scene does not take is no cause.
+        if settings != base && changed.simulation().is_ok() {
+            all.push(Variant { cause, label, settings, pile: None, cost });
+        }
+    };
+    if base.stepper.uses_method() {
+        let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
+        let label = "steps solved 100 times better".into();
+        add(Cause::Unsolved, label, tighter(base, is_driven), 2.0);
+    }
+    for divisor in DIVISORS {
+        let step = base.parameters.time_step_secs / f64::from(divisor);
+        let label = format!("Δt {} s", short(step));
+        add(Cause::TimeStep, label, base.over(step), f64::from(divisor));
+    }
+    for stepper in [Stepper::Moreau, Stepper::Range, Stepper::Dem] {
+        if stepper != base.stepper {
+            let settings = at_equal_work(scene, stepper);
+            add(Cause::ContactLaw, stepper.name().into(), settings, 4.0);
+        }
+    }
+    let rubs = scene.physics.friction && base.parameters.friction > 0.0;
+    let coheres = scene.physics.cohesion && base.parameters.bond > 0.0;
+    if rubs && coheres && base.stepper.reads("cone") {
+        let mut settings = base;
+        settings.parameters.cone = match base.parameters.cone {
+            FrictionCone::Shifted => FrictionCone::Compressive,
+            FrictionCone::Compressive => FrictionCone::Shifted,
+        };
+        add(Cause::Cone, format!("cone {}", settings.parameters.cone), settings, 1.0);
+    }
+    if rubs && base.stepper.reads("friction-model") {
+        let mut settings = base;
+        let is_coulomb = base.solver.model(false) == FrictionModel::Coulomb;
+        settings.solver.method = Method::Auto;
+        settings.solver.friction_model =
+            if is_coulomb { FrictionModel::Tresca } else { FrictionModel::Coulomb };
+        let name = if is_coulomb { "bounds of friction" } else { "Coulomb's law" };
+        add(Cause::FrictionModel, name.into(), settings, 2.0);
+    }
+    if base.parameters.restitution > 0.0 && base.stepper.reads("restitution-threshold") {
+        let mut settings = base;
+        let threshold = if base.parameters.restitution_threshold > 0.0 { 0.0 } else { THRESHOLD };
+        settings.parameters.restitution_threshold = threshold;
+        let label = if threshold > 0.0 {
+            format!("No restitution below {threshold} g·Δt")
+        } else {
+            "Restitution at every speed".into()
+        };
+        add(Cause::RestitutionThreshold, label, settings, 1.0);
+    }
+    let Some(pile) = pile else { return all };
+    let mut of_pile = |cause, label: String, pile: NewPile, cost| {
+        all.push(Variant { cause, label, settings: base, pile: Some(pile), cost });
+    };
+    let other = match pile.deposition {
+        Deposition::Rain => Deposition::DropAndRoll,
+        Deposition::DropAndRoll => Deposition::Rain,
+    };
+    let packed = NewPile { deposition: other, ..pile.clone() };
+    of_pile(Cause::Packing, format!("put down by {other}"), packed, 1.0);
+    if resizes {
+        let larger = NewPile {
+            grains: 2 * pile.grains,
+            // A box of the same shape.
+            box_width_in_diameters: 2f64.sqrt() * pile.box_width_in_diameters,
+            ..pile.clone()
+        };
+        of_pile(Cause::NumberOfGrains, format!("{} grains", larger.grains), larger, 3.0);
+    }
+    all
+}
+
+/// The same problems solved so well that nothing is left of them.
+fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
+    let solver = &mut settings.solver;
+    if solver.model(is_driven) == FrictionModel::Coulomb {
+        // Where Coulomb's law has no solution within reach, bounds of friction have one.
+        (solver.method, solver.friction_model) = (Method::Auto, FrictionModel::Coulomb);
+        (solver.stop, solver.tolerance) = (StopTest::Residual, TIGHTEST_RESIDUAL);
+        solver.fallback = if is_driven { Fallback::None } else { Fallback::Tresca };
+    } else {
+        solver.tolerance *= TIGHTER;
+    }
+    solver.max_sweeps = solver.max_sweeps.max(1_000);
+    settings
+}
+
+/// Another contact law, under which it takes as much work to break a bond as under the scene's own; where that knows no
+/// such work, as under `range` with the debonding distance that the scene has.
+fn at_equal_work(scene: &Scene, stepper: Stepper) -> Settings {
+    let mut settings = Settings { stepper, ..scene.settings() }.with_only_what_is_taken();
+    if !(scene.physics.cohesion && settings.parameters.bond > 0.0) {
+        return settings;
+    }
+    let work = |settings: Settings| {
+        let mut scene = scene.clone();
+        scene.set_settings(settings);
+        Some(scene.simulation().ok()?.fracture_work()?.joules).filter(|work| *work > 0.0)
+    };
+    let own = work(scene.settings());
+    let target = own.or_else(|| {
+        work(Settings { stepper: Stepper::Range, ..scene.settings() }.with_only_what_is_taken())
+    });
+    match (stepper, target) {
+        (Stepper::Dem, Some(target)) => {
+            // W = C₀²/2k: the work at a stiffness of 1 N/m tells k.
+            settings.parameters.stiffness = 1.0;
+            let of_one = work(settings).unwrap_or(0.0);
+            settings.parameters.stiffness = of_one / target;
+        }
+        (Stepper::Range, Some(target)) => {
+            // W = C₀ δc.
+            let of_this = work(settings).unwrap_or(target);
+            settings.parameters.debonding_distance *= target / of_this;
+        }
+        _ => {}
+    }
+    settings
+}
+
+/// A number as people write it.
+pub(crate) fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    if rounded != 0.0 && !(1e-2..1e4).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        format!("{rounded}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+
+    fn causes(scene: &Scene, pile: Option<&NewPile>) -> Vec<Cause> {
+        let mut causes: Vec<Cause> =
+            variants(scene, pile, true).iter().map(|variant| variant.cause).collect();
+        causes.dedup();
+        causes
+    }
+
+    #[test]
+    fn only_what_can_matter_is_tried() {
+        let mut pile = built_in("pile").unwrap();
+        pile.parameters.bond = 20.0;
+        let new_pile = NewPile::default();
+        assert_eq!(
+            causes(&pile, Some(&new_pile)),
+            [
+                Cause::Unsolved,
+                Cause::TimeStep,
+                Cause::ContactLaw,
+                Cause::Cone,
+                Cause::FrictionModel,
+                Cause::RestitutionThreshold,
+                Cause::Packing,
+                Cause::NumberOfGrains
+            ]
+        );
+        pile.parameters.bond = 0.0;
+        assert!(!causes(&pile, None).contains(&Cause::Cone));
+        pile.parameters.friction = 0.0;
+        pile.parameters.restitution = 0.0;
+        assert_eq!(causes(&pile, None), [Cause::Unsolved, Cause::TimeStep, Cause::ContactLaw]);
+        let drum = built_in("drum").unwrap();
+        assert!(!causes(&drum, None).contains(&Cause::NumberOfGrains));
+        // Walls that a force drives are moved by few steppers.
+        let biaxial = variants(&built_in("biaxial").unwrap(), None, false);
+        assert!(biaxial.iter().all(|variant| variant.label != "avbd"));
+        for scene in crate::scene::SCENES {
+            for variant in variants(&(scene.make)().unwrap(), None, false) {
+                let mut changed = (scene.make)().unwrap();
+                changed.set_settings(variant.settings);
+                assert!(changed.simulation().is_ok(), "{}: {}", scene.name, variant.label);
+            }
+        }
+    }
+
+    #[test]
+    fn other_laws_take_as_much_work_to_break_a_bond() {
+        let mut scene = built_in("pile").unwrap();
+        scene.parameters.bond = 20.0;
+        scene.parameters.debonding_distance = 3e-3;
+        let work = |scene: &Scene, settings: Settings| {
+            let mut scene = scene.clone();
+            scene.set_settings(settings);
+            scene.simulation().unwrap().fracture_work().map_or(f64::NAN, |work| work.joules)
+        };
+        let [range, dem] = [Stepper::Range, Stepper::Dem].map(|law| at_equal_work(&scene, law));
+        assert_eq!(range.parameters.debonding_distance, 3e-3);
+        let [of_range, of_dem] = [range, dem].map(|settings| work(&scene, settings));
+        assert!((of_dem / of_range - 1.0).abs() < 1e-9, "{of_dem} {of_range}");
+        let mut of_dem = scene.clone();
+        of_dem.set_settings(dem);
+        of_dem.parameters.debonding_distance = 0.05;
+        let back = at_equal_work(&of_dem, Stepper::Range);
+        assert!((back.parameters.debonding_distance / 3e-3 - 1.0).abs() < 1e-9);
+    }
+}

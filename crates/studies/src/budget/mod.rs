@@ -1,0 +1,185 @@
+//! An error budget: how much of a number the grains make, how much the law of their contacts, and how much the method.
+//!
+//! Each thing that the number may owe itself to is changed alone, from the same starts as the scene as it is, so that what
+//! it adds is a mean of paired differences with its interval. All intervals of a budget hold together.
+
+mod answer;
+mod causes;
+mod collect;
+mod quantity;
+mod report;
+mod starts;
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use serde::Serialize;
+
+pub use self::answer::Trust;
+use self::answer::{Design, QuantityBudget, budget_of};
+use self::causes::variants;
+use self::collect::{Ended, Job, Limits, Ran, collect};
+use self::quantity::{Quantity, Window};
+use self::starts::{RunValues, Starts, run, said_of};
+use crate::config::Config;
+use crate::error::{self, Error, Result};
+use crate::output::{check_writable, print_line, print_text};
+use crate::runner::Runner;
+use crate::scene::Scene;
+
+/// What a budget is asked for.
+#[derive(Clone, Debug)]
+pub struct BudgetOptions {
+    /// The scene.
+    pub config: Config,
+    /// Columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`, `total(…)` of them; the slump where
+    /// there are none.
+    pub quantities: Vec<String>,
+    /// Begin of the window, s; 0 where there is none.
+    pub from_secs: Option<f64>,
+    /// Its end, s; the scene's where there is none.
+    pub to_secs: Option<f64>,
+    /// Half the width of every interval, in the quantity's unit; a tenth of the value where there is none.
+    pub within: Option<f64>,
+    /// Time of this machine's cores together, s of each.
+    pub cost_secs: f64,
+}
+
+/// A budget of some quantities of a scene.
+#[derive(Debug, Serialize)]
+pub struct ErrorBudget {
+    program: &'static str,
+    version: &'static str,
+    scene: String,
+    /// How it is stepped, in a few words.
+    stepped: String,
+    from_secs: f64,
+    to_secs: f64,
+    ended: Ended,
+    /// All that the scene says, grains left out.
+    config: Config,
+    quantities: Vec<QuantityBudget>,
+}
+
+impl ErrorBudget {
+    /// Name, answer in words, and verdict of each quantity.
+    pub fn answers(&self) -> impl Iterator<Item = (&str, &str, Trust)> {
+        self.quantities.iter().map(|one| (&*one.quantity, &*one.answer, one.trust))
+    }
+}
+
+/// The quantity of what asks for none.
+const QUANTITY: &str = "slump";
+
+/// Makes an error budget in `folder`: `report.md`, a picture, `budget.csv` and `budget.json`. The same call goes on where
+/// one was stopped.
+///
+/// # Errors
+/// Names the quantity, the time or the setting that is not allowed, or the folder that cannot be written; and where a pile
+/// does not come to rest.
+pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
+    let budget = made(options, folder, |_| ControlFlow::Continue(()))?;
+    report::write(&budget, folder)?;
+    for one in &budget.quantities {
+        print_text(format!("{}\n\n", one.answer));
+        print_text(report::table(one).to_markdown());
+    }
+    print_line(folder.join(report::REPORT).display());
+    Ok(budget)
+}
+
+/// The same without files but those that it goes on from. `watch` has each stage of it, and ends it by breaking.
+///
+/// # Errors
+/// As [`budget`].
+pub fn made(
+    options: &BudgetOptions,
+    folder: &Path,
+    mut watch: impl FnMut(&ErrorBudget) -> ControlFlow<()>,
+) -> Result<ErrorBudget> {
+    let BudgetOptions { config, quantities, within, cost_secs, .. } = options;
+    let asked = if quantities.is_empty() { &[QUANTITY.to_owned()] } else { &quantities[..] };
+    let quantities: Vec<Quantity> = asked.iter().map(|text| text.parse()).collect::<Result<_>>()?;
+    error::check(*cost_secs > 0.0, "cost", format!("{cost_secs} s"), "a time > 0")?;
+    if let Some(within) = within {
+        error::check(
+            *within > 0.0 && within.is_finite(),
+            "within",
+            *within,
+            "a finite number > 0",
+        )?;
+    }
+    check_writable("out", folder)?;
+    let starts = Starts::of(config, &folder.join("states"))?;
+    let window = window_of(options, &starts)?;
+    let variants = variants(&starts.scene, starts.pile.as_ref(), starts.resizes());
+    let runner: Runner<RunValues> = Runner::open("budget", folder, "budget")?;
+    let key = |start, variant| starts.key(start, variant, &quantities, window);
+    let ran = |key: &str, scene: &dyn Fn() -> Result<Scene>| -> Result<Ran> {
+        let finished = runner.result(key, || run(&scene()?, &quantities, window))?;
+        Ok(Ran { values: finished.result, secs: finished.wall_secs })
+    };
+    let itself = match starts.pile {
+        Some(_) => Some(ran(&key(None, None)?, &|| starts.itself())?),
+        None => None,
+    };
+    let compute = |Job { series, start }: Job| {
+        let (start, variant) = (start as u64 + 1, series.checked_sub(1).map(|one| &variants[one]));
+        ran(&key(Some(start), variant)?, &|| starts.scene(start, variant))
+    };
+    let costs = [1.0].into_iter().chain(variants.iter().map(|variant| variant.cost)).collect();
+    let cost_secs = cost_secs * rayon::current_num_threads() as f64;
+    let limits = Limits { cost_secs, within: *within };
+    let settings = starts.scene.settings();
+    let design = Design {
+        variants: &variants,
+        has_seeds: starts.pile.is_some(),
+        time_step_secs: settings.parameters.time_step_secs,
+    };
+    let of = |runs: &collect::Runs, ended: Ended| {
+        let of_quantity = |(number, quantity): (usize, &Quantity)| {
+            let itself = itself.as_ref().filter(|ran| ran.values.failure.is_none());
+            let itself = itself.and_then(|ran| ran.values.values[number]);
+            budget_of(runs, ended, &design, (number, quantity), itself)
+        };
+        ErrorBudget {
+            program: "slump",
+            version: env!("CARGO_PKG_VERSION"),
+            scene: starts.scene.name.clone(),
+            stepped: said_of(&settings),
+            from_secs: window.from_secs,
+            to_secs: window.to_secs,
+            ended,
+            config: config.resolved(&starts.scene),
+            quantities: quantities.iter().enumerate().map(of_quantity).collect(),
+        }
+    };
+    let (runs, ended) = collect(costs, quantities.len(), limits, &compute, &mut |runs| {
+        watch(&of(runs, Ended::Stopped))
+    })?;
+    Ok(of(&runs, ended))
+}
+
+fn window_of(options: &BudgetOptions, starts: &Starts) -> Result<Window> {
+    let duration_secs = starts.scene.duration_secs;
+    let (from_secs, to_secs) =
+        (options.from_secs.unwrap_or(0.0), options.to_secs.unwrap_or(duration_secs));
+    let allowed =
+        |from: f64| format!("above {from} s and at most the duration of {duration_secs} s");
+    if !(from_secs >= 0.0 && from_secs < duration_secs) {
+        let allowed = format!("at least 0 and below the duration of {duration_secs} s");
+        return Err(Error::value("from", from_secs, allowed));
+    }
+    if !(to_secs > from_secs && to_secs <= duration_secs) {
+        return Err(Error::value("to", to_secs, allowed(from_secs)));
+    }
+    let step = starts.scene.parameters.time_step_secs;
+    if to_secs - from_secs < 0.5 * step {
+        return Err(Error::value(
+            "to",
+            to_secs,
+            format!("at least a time step of {step} s after from"),
+        ));
+    }
+    Ok(Window { from_secs, to_secs })
+}

@@ -1,0 +1,181 @@
+//! What a budget leaves in its folder: the answer in words, a picture, and the table as CSV and JSON.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::ErrorBudget;
+use super::answer::{CauseRow, QuantityBudget};
+use super::causes::{Share, short};
+use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points};
+use crate::error::{Error, Result};
+use crate::output::write_file;
+use crate::report::{ReportTable, write_sheet};
+
+pub(super) const REPORT: &str = "report.md";
+
+pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
+    let json =
+        serde_json::to_string_pretty(budget).map_err(|error| Error::file("budget.json", error))?;
+    write_file(&folder.join("budget.json"), format!("{json}\n").as_bytes())?;
+    let mut csv = Vec::new();
+    let mut text = format!(
+        "# {}: physics, time step or solver?\n\n{}, {} to {} s.\n",
+        budget.scene,
+        budget.stepped,
+        short(budget.from_secs),
+        short(budget.to_secs)
+    );
+    for (one, number) in budget.quantities.iter().zip(1..) {
+        let table = table(one);
+        let rows = table.to_csv()?;
+        // One header for all of them.
+        let skipped = if csv.is_empty() {
+            0
+        } else {
+            1 + rows.iter().position(|&byte| byte == b'\n').unwrap_or(0)
+        };
+        csv.extend_from_slice(&rows[skipped..]);
+        let name = format!("budget-{number}");
+        let _ = write!(text, "\n## {}\n\n{}\n\n", one.quantity, one.answer);
+        if one.value.is_some() {
+            write_sheet(folder, &name, &sheet(budget, one), "slump budget")?;
+            let _ = write!(text, "![{name}]({name}.png)\n\n");
+        }
+        text.push_str(&table.to_markdown());
+    }
+    write_file(&folder.join("budget.csv"), &csv)?;
+    write_file(&folder.join(REPORT), text.as_bytes())
+}
+
+/// A row a cause, with all that is known of it.
+pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
+    let columns = "quantity share cause changed starts adds low high unsolved cost note";
+    let number =
+        |value: f64| if value.is_finite() { format!("{value:.6e}") } else { String::new() };
+    let ends = |ends: Option<[f64; 3]>| {
+        ends.map_or_else(|| vec![String::new(); 3], |ends| ends.map(number).to_vec())
+    };
+    let mut rows = Vec::new();
+    let mut add =
+        |share: &str, cause: &str, changed: &str, starts: usize, values, rest: [String; 3]| {
+            let mut row = vec![
+                budget.quantity.clone(),
+                share.into(),
+                cause.into(),
+                changed.into(),
+                starts.to_string(),
+            ];
+            row.extend(ends(values));
+            row.extend(rest);
+            rows.push(row);
+        };
+    let none = || [String::new(), "1.00".to_owned(), String::new()];
+    add("grains", "value itself", "", budget.starts, budget.value, none());
+    for row in &budget.causes {
+        let cost = row.cost.map_or_else(String::new, |cost| format!("{cost:.2}"));
+        let note = row.failure.clone().unwrap_or_default();
+        let unsolved = format!("{:.4}", row.unsolved);
+        add(
+            row.share.word(),
+            row.cause,
+            &row.changed,
+            row.starts,
+            row.adds,
+            [unsolved, cost, note],
+        );
+    }
+    if let Some(limit) = budget.limit_adds {
+        add(
+            "method",
+            "time step",
+            "Δt → 0",
+            budget.starts,
+            Some(limit),
+            [String::new(), String::new(), "extrapolated".into()],
+        );
+    }
+    ReportTable { name: "budget".into(), columns: columns.split(' ').collect(), rows }
+}
+
+fn colour(share: Share) -> Rgb {
+    PALETTE[match share {
+        Share::Grains => 3,
+        Share::Law => 2,
+        Share::Method => 1,
+    }]
+}
+
+/// A bar a cause, the largest first; beside it the settings of the method that were tried, by cost and by what they leave.
+fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
+    let mut rows: Vec<(&CauseRow, [f64; 3])> =
+        one.causes.iter().filter_map(|row| Some((row, row.adds?))).collect();
+    rows.sort_by(|(_, one), (_, other)| other[0].abs().total_cmp(&one[0].abs()));
+    let reach = rows.iter().flat_map(|(_, ends)| *ends).map(f64::abs).filter(|end| end.is_finite());
+    let reach = 1.05 * reach.fold(one.within, f64::max);
+    let unit = if one.unit.is_empty() { String::new() } else { format!(" ({})", one.unit) };
+    let label = format!("what it adds to {}{unit}", one.quantity);
+    let places = (rows.len() as f64 - 0.4, -0.6);
+    let mut y = Axis::linear("", places.0, places.1);
+    y.ticks =
+        rows.iter().zip(0..).map(|((row, _), at)| (f64::from(at), row.changed.clone())).collect();
+    let title = format!("{}: {}", budget.scene, budget.stepped);
+    let mut chart = Chart::new(title, Axis::linear(&*label, -reach, reach), y);
+    for share in [Share::Method, Share::Law, Share::Grains] {
+        let name = match share {
+            Share::Method => "of the method",
+            Share::Law => "of the law",
+            Share::Grains => "of the grains",
+        };
+        let of_share = rows.iter().zip(0..).filter(|((row, _), _)| row.share == share);
+        let bars: Vec<Point> = of_share
+            .map(|((_, [mean, low, high]), at)| Point {
+                x: *mean,
+                y: f64::from(at),
+                interval: Some((low.max(-reach), high.min(reach))),
+            })
+            .collect();
+        if !bars.is_empty() {
+            chart.layers.push(Layer::curve(name, bars, colour(share), Look::Bars));
+        }
+    }
+    for end in [-one.within, one.within] {
+        let line = points([(end, places.0), (end, places.1)]);
+        chart.layers.push(Layer::quiet("within", line, INK, Look::Dashes(1)));
+    }
+    let mut charts = vec![chart];
+    charts.extend(by_cost(one, &label));
+    let width = 900 + 500 * (charts.len() as u32 - 1);
+    let caption = vec![format!(
+        "{} starts. Lines: intervals that hold together in 95 % of budgets; dashes: ± {}{}.",
+        one.starts,
+        short(one.within),
+        if one.unit.is_empty() { String::new() } else { format!(" {}", one.unit) }
+    )];
+    Sheet { size: (width, 200 + 50 * rows.len().max(4) as u32), charts, caption }
+}
+
+/// What the time steps that were tried leave beside the smallest of them, by what they cost.
+fn by_cost(one: &QuantityBudget, label: &str) -> Option<Chart> {
+    let tried: Vec<Point> = one
+        .left_by_time_step
+        .iter()
+        .map(|(cost, [mean, low, high])| Point {
+            x: *cost,
+            y: *mean,
+            interval: Some((*low, *high)),
+        })
+        .collect();
+    let most = tried.iter().map(|point| point.x).reduce(f64::max)?;
+    let ends = tried.iter().filter_map(|point| point.interval).flat_map(|(low, high)| [low, high]);
+    let reach = 1.05 * ends.map(f64::abs).filter(|end| end.is_finite()).fold(one.within, f64::max);
+    let x = Axis::log("time, by that of the scene as it is", 0.8, 1.3 * most);
+    let y = Axis::linear(label.replace("what it adds", "what the time step adds"), -reach, reach);
+    let mut chart = Chart::new("accuracy by cost", x, y);
+    for end in [-one.within, one.within] {
+        let line = points([(0.8, end), (1.3 * most, end)]);
+        chart.layers.push(Layer::quiet("within", line, INK, Look::Dashes(1)));
+    }
+    chart.layers.push(Layer::quiet("time step", tried, colour(Share::Method), Look::LineAndDots));
+    chart.width = 0.55;
+    Some(chart)
+}

@@ -1,0 +1,183 @@
+//! The starts that all variants of a scene share, and their runs.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use serde::{Deserialize, Serialize};
+
+use super::causes::Variant;
+use super::quantity::{Quantity, Watch, Window};
+use crate::config::{BaseScene, Config};
+use crate::error::{Error, Result};
+use crate::number;
+use crate::output::check_writable;
+use crate::scene::{NewPile, Scene};
+use crate::sim::{RunEnding, Settings, Tally};
+use crate::states::settled_pile;
+
+/// How far grains are moved for another start of the same scene, in mean diameters: what is chaotic makes much of it.
+const MOVED_IN_DIAMETERS: f64 = 1e-9;
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct RunValues {
+    /// The quantities, in their order; none where the run has no such number.
+    pub values: Vec<Option<f64>>,
+    /// Why they are worth nothing: its state was no longer finite, or grains were lost.
+    pub failure: Option<String>,
+    /// Part of the steps that were not solved as asked.
+    #[serde(with = "number")]
+    pub unsolved: f64,
+    /// How long it took without its start, s.
+    #[serde(with = "number")]
+    pub run_secs: f64,
+}
+
+/// Where runs start from: piles of other seeds where the scene makes its grains, else the scene itself and the scene
+/// with its grains moved by next to nothing.
+pub(super) struct Starts {
+    config: Config,
+    base: BaseScene,
+    /// The scene as it is asked for.
+    pub scene: Scene,
+    pub pile: Option<NewPile>,
+    states: PathBuf,
+}
+
+impl Starts {
+    /// Those of what is asked for. Initial states lie in `states`.
+    pub(super) fn of(config: &Config, states: &Path) -> Result<Self> {
+        let base = config.base_scene()?;
+        let scene = config.change(&base)?;
+        let pile = config.new_pile()?.or_else(|| {
+            let is_shipped = config.source.initial.is_none()
+                && config.source.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
+                    == Config::DEFAULT_SCENE;
+            is_shipped.then(NewPile::default)
+        });
+        if pile.is_some() {
+            check_writable("out", states)?;
+        }
+        Ok(Self { config: config.clone(), base, scene, pile, states: states.to_owned() })
+    }
+
+    /// True where piles of another number of grains can be made.
+    pub(super) fn resizes(&self) -> bool {
+        self.pile.is_some() && !self.is_of_file()
+    }
+
+    fn is_of_file(&self) -> bool {
+        self.config.source.scene.as_deref().is_some_and(|name| name != Config::DEFAULT_SCENE)
+    }
+
+    /// The seed of a start; none where grains are moved. The seed of the shipped pile, which was chosen for what it shows,
+    /// is never among them.
+    fn seed(&self, start: u64) -> Option<u64> {
+        let chosen = NewPile::default().seed;
+        self.pile.as_ref().map(|_| if start < chosen { start } else { start + 1 })
+    }
+
+    /// The scene of a start, counted from 1, with a variant's settings and pile.
+    pub(super) fn scene(&self, start: u64, variant: Option<&Variant>) -> Result<Scene> {
+        let settings = variant.map_or_else(|| self.scene.settings(), |variant| variant.settings);
+        let pile = variant.and_then(|variant| variant.pile.as_ref()).or(self.pile.as_ref());
+        let mut scene = match (pile, self.seed(start)) {
+            (Some(pile), Some(seed)) => {
+                let pile = NewPile { seed, ..pile.clone() };
+                let grains = settled_pile(&self.states, &pile, |_| true)?;
+                let mut config = self.config.clone();
+                if !self.is_of_file() {
+                    let source = &mut config.source;
+                    source.grains = Some(pile.grains);
+                    source.box_width = Some(pile.box_width_in_diameters);
+                    (source.seed, source.deposition) = (Some(seed), Some(pile.deposition));
+                }
+                config.scene_from(grains)?
+            }
+            _ => self.moved(start),
+        };
+        scene.set_settings(settings);
+        scene.data = None;
+        Ok(scene)
+    }
+
+    /// The scene that was asked for.
+    pub(super) fn itself(&self) -> Result<Scene> {
+        self.config.scene_on(self.base.clone(), |_| true)
+    }
+
+    /// Names a run from a start, or of the scene itself: a hash of all that its result hangs on.
+    pub(super) fn key(
+        &self,
+        start: Option<u64>,
+        variant: Option<&Variant>,
+        quantities: &[Quantity],
+        window: Window,
+    ) -> Result<String> {
+        let names: Vec<&str> = quantities.iter().map(|quantity| &*quantity.name).collect();
+        let settings = variant.map_or_else(|| self.scene.settings(), |variant| variant.settings);
+        let pile = variant.and_then(|variant| variant.pile.as_ref()).or(self.pile.as_ref());
+        let source = &self.config.source;
+        let made_of = (env!("CARGO_PKG_VERSION"), &self.scene, source, start, settings, pile);
+        let said = serde_json::to_vec(&(made_of, names, [window.from_secs, window.to_secs]))
+            .map_err(|error| Error::value("scene", &self.scene.name, error.to_string()))?;
+        Ok(blake3::hash(&said).to_hex()[..32].to_owned())
+    }
+
+    fn moved(&self, start: u64) -> Scene {
+        let mut scene = self.scene.clone();
+        if start > 1 {
+            let mut random = Pcg64::seed_from_u64(start);
+            let reach = MOVED_IN_DIAMETERS * scene.mean_diameter;
+            for grain in &mut scene.grains {
+                grain.position.x += random.random_range(-reach..reach);
+                let along_y = random.random_range(-reach..reach);
+                if scene.physics.axes == 2 {
+                    grain.position.y += along_y;
+                }
+            }
+        }
+        scene
+    }
+}
+
+/// Runs a scene to the end of the window.
+pub(super) fn run(scene: &Scene, quantities: &[Quantity], window: Window) -> Result<RunValues> {
+    let begun = Instant::now();
+    let mut simulation = scene.simulation()?;
+    let mut watch = Watch::new(quantities, window, &simulation);
+    let mut tally = Tally::default();
+    let steps = watch.steps();
+    let ended = simulation.run(steps, |simulation| {
+        tally.add(simulation.observables());
+        watch.add(simulation);
+        Ok(ControlFlow::Continue(()))
+    })?;
+    let lost = simulation.observables().lost_grains;
+    let failure = match ended {
+        RunEnding::NotFinite(_) => Some("its state was no longer finite".to_owned()),
+        _ if lost > 0 => Some(format!("{lost} grains were lost")),
+        _ => None,
+    };
+    let unsolved = tally.unconverged_steps - tally.fallback_steps.min(tally.unconverged_steps);
+    let unsolved = unsolved as f64 / tally.steps.max(1) as f64;
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+    let values = watch.values().into_iter().map(finite).collect();
+    Ok(RunValues { values, failure, unsolved, run_secs: begun.elapsed().as_secs_f64() })
+}
+
+/// How a scene is stepped, in a few words.
+pub(super) fn said_of(settings: &Settings) -> String {
+    let parameters = &settings.parameters;
+    format!(
+        "{}, Bond {}, Δt {} s, ρ {}, μ {}",
+        settings.stepper,
+        parameters.bond,
+        super::causes::short(parameters.time_step_secs),
+        parameters.restitution,
+        parameters.friction
+    )
+}
