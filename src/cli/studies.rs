@@ -79,7 +79,7 @@ pub(super) enum StudyCommand {
         #[arg(long, value_name = "DIR", help_heading = "Budget")]
         out: PathBuf,
     },
-    /// Make the paper's figures, and those its conclusion asks for, from simulation alone
+    /// Make the paper's figures, and the maps that its conclusion asks for, from simulation alone
     Reproduce {
         /// Figures, or all
         #[arg(required = true, value_name = "FIGURE", value_parser = PossibleValuesParser::new(figure_names()))]

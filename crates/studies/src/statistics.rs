@@ -61,11 +61,6 @@ impl Mean {
         Self { mean: -self.mean, ..*self }.p_above(-bound)
     }
 
-    /// Two-sided p-value of a true mean other than 0.
-    pub(super) fn p_not_zero(&self) -> f64 {
-        (2.0 * self.p_above(0.0).min(self.p_below(0.0))).min(1.0)
-    }
-
     /// The mean and its interval with so many decimals and signs.
     pub(super) fn signed(&self, decimals: usize) -> String {
         let Self { mean, low, high, .. } = self;

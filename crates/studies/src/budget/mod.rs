@@ -9,6 +9,7 @@ mod collect;
 mod quantity;
 mod report;
 mod starts;
+mod words;
 
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -12,8 +12,7 @@ use crate::statistics::{Mean, mean, p_value, slope};
 
 /// What every claim about the slump of piles hangs on besides the cone.
 const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
-                       restitution without a threshold; the states. pile-choices has what becomes of it where they are \
-                       changed";
+                       restitution without a threshold; the states. `slump budget` tells what each of them adds";
 const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];
 /// A pile whose slump changes by less than this per decade of Δt is flat: a tenth of what the paper's
 /// cohesive piles do.

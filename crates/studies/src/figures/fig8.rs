@@ -2,7 +2,6 @@
 //! distances, and over Δt and stopping tolerance.
 
 use super::claims::{Claim, Verdict};
-use super::paired::parts;
 use super::studies::{Rows, changes};
 use super::{Figure, StudyRunner};
 use crate::RunResult;
@@ -55,7 +54,7 @@ fn agreed(rows: &Rows<'_>) -> usize {
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let first = rows.0[0].0;
-    let all = parts(&rows, |config| changes(config, first));
+    let all = rows.parts(|config| changes(config, first));
     let mut y = Axis::linear("", -(all.len() as f64), 1.0);
     y.ticks = (0..).zip(&all).map(|(row, (name, _))| (-f64::from(row), name.clone())).collect();
     let x = Axis::log("Δt (s)", 8e-5, 1.3e-2);

@@ -10,20 +10,19 @@ use crate::output::{check_writable, note_line, print_line, print_text, write_fil
 use crate::report::write_sheet;
 use crate::solver::worst;
 
-const SNAPSHOTS: &str = "snapshots";
+/// The pictures of grains, which are drawn together.
+const SNAPSHOTS: [&str; 3] = ["fig3", "fig4", "fig7"];
 const ALL: &str = "all";
-/// What is not of the paper and takes hours: asked for by name alone.
-const APART: [&str; 6] = ["range", "range-regimes", "dry", "cohesion", "friction", "tolerance"];
 
 /// The names that [`reproduce`] knows.
 pub fn figure_names() -> Vec<&'static str> {
     let charts = FIGURES.iter().map(|figure| figure.name);
-    [ALL, SNAPSHOTS].into_iter().chain(charts).collect()
+    [ALL].into_iter().chain(SNAPSHOTS).chain(charts).collect()
 }
 
 /// Makes the figures of those names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies
 /// lie below it, so that the same call goes on where one was stopped. `snapshots` draws the pictures
-/// of grains into a folder.
+/// of grains, Fig. 3, 4 and 7, into a folder.
 ///
 /// # Errors
 /// Where a name is unknown, the folder cannot be written, or a study fails.
@@ -38,10 +37,7 @@ pub fn reproduce(
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(Error::value("figure", unknown, format!("one of {}", known.join(", "))));
     }
-    let wanted = |name: &str| {
-        let asked_for = |asked: &String| asked == name || asked == ALL && !APART.contains(&name);
-        names.iter().any(asked_for)
-    };
+    let wanted = |name: &str| names.iter().any(|asked| asked == name || asked == ALL);
     check_writable("out", folder)?;
     let mut studies = StudyRunner::new(folder.join("studies"), quick);
     let mut report = opening(quick);
@@ -50,7 +46,7 @@ pub fn reproduce(
         for study in info.studies {
             studies.run(study)?;
         }
-        let mut figure = info.figure(&studies)?;
+        let mut figure = (info.make)(&studies)?;
         studies.qualify(info.studies, &mut figure.claims);
         figure.sheet.caption.extend(studies.note(info.studies));
         let quick = if quick { " --quick" } else { "" };
@@ -62,9 +58,9 @@ pub fn reproduce(
         note_line(format_args!("{}: {:.0} s", info.name, begun.elapsed().as_secs_f64()));
         report.push_str(&section(info, &figure));
     }
-    if wanted(SNAPSHOTS) {
+    if SNAPSHOTS.iter().any(|name| wanted(name)) {
         snapshots(folder)?;
-        let pictures = ["fig3", "fig4", "fig7"].map(|name| format!("\n![{name}]({name}.png)\n"));
+        let pictures = SNAPSHOTS.map(|name| format!("\n![{name}]({name}.png)\n"));
         report.push_str(&format!("\n## Snapshots\n{}", pictures.concat()));
     }
     report.push_str(&closing(&studies, started.elapsed().as_secs_f64()));

@@ -19,9 +19,7 @@ macro_rules! shipped {
 }
 
 const STUDIES: &[(&str, &str)] = shipped![
-    "pile" "pile-compressive" "pile-choices" "cradle-courses" "cradle-choices"
-    "cradle-share" "cradle-map" "pile-map" "pile-size" "pile-tolerance" "range" "range-regimes"
-    "range-size" "dry" "cohesion" "friction" "tolerance"
+    "pile" "pile-compressive" "cradle-courses" "cradle-choices" "cradle-share" "cradle-map" "pile-map"
 ];
 
 pub(super) struct StudyRunner {
@@ -123,10 +121,6 @@ impl<'a> Rows<'a> {
         Self(self.0.iter().copied().filter(|(config, _)| holds(config)).collect())
     }
 
-    pub(super) fn parted(&self, holds: impl Fn(&Config) -> bool) -> [Self; 2] {
-        [self.such_that(&holds), self.such_that(|config| !holds(config))]
-    }
-
     /// Those of initial states that were not chosen for what they show.
     pub(super) fn ensemble(&self) -> Self {
         self.such_that(|config| config.source.seed != Some(NewPile::default().seed))
@@ -181,6 +175,19 @@ impl<'a> Rows<'a> {
 
     pub(super) fn slumps(&self) -> Vec<f64> {
         self.results(|result| result.slump)
+    }
+
+    /// Runs by what is said of them, in their order.
+    pub(super) fn parts(&self, words: impl Fn(&Config) -> String) -> Vec<(String, Self)> {
+        let mut parts: Vec<(String, Self)> = Vec::new();
+        for &(config, result) in &self.0 {
+            let words = words(config);
+            match parts.iter_mut().find(|(known, _)| *known == words) {
+                Some((_, part)) => part.0.push((config, result)),
+                None => parts.push((words, Self(vec![(config, result)]))),
+            }
+        }
+        parts
     }
 
     /// Two numbers of each run, rising by the first: a group a state and Bond, the states one after the other.
