@@ -21,7 +21,7 @@ use std::ops::Range;
 use super::{FrictionProjection, Row, StepProblem, with_projection};
 use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
-use crate::solver::settings::FrictionModel;
+use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 use crate::threads;
 
 /// What one pass over the rows tells of a solved step.
@@ -96,17 +96,20 @@ impl Measures {
 /// formed in m/s and weighted by m_n.
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
+    common_map(problem).residual::<M>(problem)
+}
+
+/// What [`residual`] is made of.
+pub(super) fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
     };
-    sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
+    sum_of_rows(problem, add_error, Sums::add_all)
 }
 
 /// The same of the model of friction that a problem is solved by: the natural map of its projection
 /// (`problem::friction`), over the same scale, so that both can be set side by side.
-pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
-    problem: &StepProblem<M>,
-) -> f64 {
+pub(super) fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         let opening = motion.now[0] + row.restitution_velocity;
@@ -115,12 +118,59 @@ pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
         let allowed = P::project::<M>(&problem.law, problem.friction.now[number], trial);
         sums.add::<M>(row, [normal - allowed[0], tangential - allowed[1]], &motion);
     };
-    sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
+    sum_of_rows(problem, add_error, Sums::add_all)
 }
 
 /// The natural map's residual of what a problem is solved for: of its model of friction, or the common one.
 pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
     with_projection!(problem, M, P => P::residual(problem))
+}
+
+/// True where a problem is solved as well as these settings promise, whoever solved it and whatever that says of itself.
+///
+/// **What a small change promises.** A contact's error in the natural map is the change that a Gauss–Seidel update
+/// would now make of its impulses. A sweep leaves each contact without one, and what comes after it in the same sweep
+/// brings some back. Projections take no two points further apart, so with W the Delassus operator and ΔP the changes
+/// of the sweep
+///
+/// > |e_k| ≤ m_k Σ_l |W_kl ΔP_l|,  l the later contacts of the bodies of k.
+///
+/// No m_k/m_i is above 1, so that ‖e‖ ≤ C‖ΔP‖. Among equal discs, of which none touches more than six, the sums of these
+/// rows and columns make C at most 7.1; in runs of all built-in scenes sweeps left 0.14 ‖ΔP‖ in the median and 0.85 ‖ΔP‖
+/// at most. Impulses that rest far from a solution, since nothing moves or a method takes small steps, err by more.
+pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSettings) -> bool {
+    let tolerance = settings.tolerance;
+    if settings.stop == StopTest::VelocityError {
+        return velocity_error(problem).is_within(tolerance);
+    }
+    let map = with_projection!(problem, M, P => P::map(problem));
+    let change = match settings.stop {
+        StopTest::RelativeChange => tolerance * squared_impulses(problem).sqrt(),
+        StopTest::ImpulsePerMass => tolerance * problem.bodies.mean_mass,
+        _ => return map.residual::<M>(problem) <= tolerance,
+    };
+    let error = map.error.sqrt();
+    error.is_finite() && error <= LEFT_OF_CHANGE * change + rounding(problem)
+}
+
+/// C in [`is_solved`]. Smaller: what sweeps leave among discs of many sizes may be refused; larger: impulses pass that
+/// rest where nothing is solved.
+const LEFT_OF_CHANGE: f64 = 8.0;
+
+/// P² of an impulse (λ_n, λ_t) of an effective mass, (N·s)².
+#[inline(always)]
+pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
+    mass * mass * (normal * normal + tangential * tangential)
+}
+
+/// Σ P², (N·s)².
+pub(crate) fn squared_impulses<M: Model>(problem: &StepProblem<M>) -> f64 {
+    let squared = |number: usize| {
+        let row = problem.rows.get(number);
+        squared_impulse(row.effective_mass, problem.reduced_impulse(number, row))
+    };
+    let fixed = problem.rows.fixed.len();
+    (0..fixed).map(squared).sum::<f64>() + (fixed..problem.rows.len()).map(squared).sum::<f64>()
 }
 
 /// The residual of the model of friction of a problem; none under Coulomb's law.
@@ -226,7 +276,7 @@ pub(crate) fn residual_of<M: Model>(
 
 /// The squares of a residual's error and scale.
 #[derive(Default)]
-struct Sums {
+pub(crate) struct Sums {
     error: f64,
     scale: f64,
 }
@@ -279,14 +329,9 @@ impl Sums {
         }
     }
 
-    fn residual<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
+    pub(super) fn residual<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         if self.error > 0.0 && self.scale == 0.0 {
-            let squared = |row: &Row<M>| {
-                let [normal, tangential] = row.impulse();
-                row.effective_mass.powi(2) * (normal * normal + tangential * tangential)
-            };
-            let impulses: f64 = problem.rows.iter().map(squared).sum();
-            return if self.error <= ROUNDING * ROUNDING * impulses { 0.0 } else { f64::INFINITY };
+            return if self.error.sqrt() <= rounding(problem) { 0.0 } else { f64::INFINITY };
         }
         if self.error > 0.0 { (self.error / self.scale).sqrt() } else { self.error.sqrt() }
     }
@@ -389,6 +434,12 @@ impl GapSums {
 /// rounding left, and no residual. Smaller: methods that scale impulses would not have solved a step in
 /// which nothing happens; larger: errors would go unseen.
 const ROUNDING: f64 = 1e-14;
+
+/// What that leaves of errors, N·s.
+fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
+    let squared = |row: &Row<M>| squared_impulse(row.effective_mass, row.impulse());
+    ROUNDING * problem.rows.iter().map(squared).sum::<f64>().sqrt()
+}
 
 /// Relative (normal, tangential) velocities of one contact, m/s: along the tangent relative to a surface that
 /// moves.
