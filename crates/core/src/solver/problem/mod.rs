@@ -8,6 +8,7 @@ mod friction;
 mod order;
 mod residual;
 mod rows;
+mod solved;
 mod walls;
 
 use glam::DVec2;
@@ -21,11 +22,9 @@ pub use self::residual::{
     Measures, RowVelocities, VelocityError, for_each_row, measure, relative_velocities, residual,
     velocity_error, worst,
 };
-pub(crate) use self::residual::{
-    errors, is_solved, natural_map, residual_of, squared_impulse, squared_impulses,
-    squared_residual_scale,
-};
+pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
+pub(crate) use self::solved::{is_solved, squared_impulse, squared_impulses};
 pub(crate) use self::walls::MovingWalls;
 pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, MovingSurfaces, Surface};
 use super::kinematics::Model;
