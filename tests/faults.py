@@ -4,7 +4,7 @@
 tests/faults.py target/release/slump [FAULTS] > table
 
 Signals at random times x frames, GIF, sweep, reproduce, chart; a file system that is full (needs root, else
-left out); folders that are read-only or missing; streams that are closed or full. After each fault everything
+left out); folders that are read-only or missing; streams that are closed or full; two programs at one folder. After each fault everything
 that was finished must be there and readable, nothing half-written under a final name, and the same command must
 go on. Of sweep, reproduce and chart each finished run counts for itself: its record, and its course where it has
 one, must be the same afterwards, and it must not be computed again. Prints a line for each kind of fault: how
@@ -236,6 +236,40 @@ def bad_folder():
     note("a folder that is none", [] if fine else [f"{words}: code {run.returncode}, {run.stderr[-200:]!r}"])
 
 
+PICTURES = ["--headless", "--renderer", "cpu", "--size", "64x36", "--scene", "cradle", "--duration", "4", "--frames"]
+TABLES = ["--headless", "--scene", "cradle", "--duration", "4", "--data-format", "csv", "--data"]
+
+
+def files_of(out):
+    """Tables and pictures, which are the same whenever they are made, but for the command line at their heads."""
+    paths = glob.glob(os.path.join(out, "**", "*.*"), recursive=True)
+    read = lambda path: [line for line in open(path, "rb") if not line.startswith(b"# command: ")]
+    return {os.path.relpath(path, out): read(path) for path in paths if path.endswith((".csv", ".png"))}
+
+
+def two_programs(folder, works):
+    """Two programs at one folder, the second at any time: whoever ends well has all of its work there, unless the other was
+    told to clear the folder and came when that one had ended."""
+    out = os.path.join(folder, "out")
+    kinds = random.choices(list(works), k=2)
+    clears = [random.random() < 0.5 for _ in kinds]
+    options = {"sweep": "--redo"}
+    lines = [[*works[kind][0], out, *[options.get(kind, "--overwrite")] * clear] for kind, clear in zip(kinds, clears)]
+    first = start(*lines[0])
+    time.sleep(random.uniform(0, 1.5 * works[kinds[0]][2]))
+    second, was_over = start(*lines[1]), first.poll() is not None
+    codes = [run.wait(timeout=120) for run in (first, second)]
+    there, wrong = files_of(out), half_written(out)
+    if not set(codes) <= {0, 2} or 0 not in codes:
+        wrong.append(f"exit codes {codes}")
+    is_cleared = was_over and clears[1] and codes[1] == 0
+    for kind, code, cleared in zip(kinds, codes, [is_cleared, False]):
+        if code == 0 and not cleared and any(there.get(name) != text for name, text in works[kind][1].items()):
+            wrong.append(f"{kind} of {kinds}, clearing {clears}: not all that was finished is there")
+    finished["two programs"] += codes.count(0)
+    note("two programs", wrong)
+
+
 def main():
     home = tempfile.mkdtemp()
     study, charts = os.path.join(home, "study.toml"), os.path.join(home, "chart")
@@ -245,11 +279,16 @@ def main():
         begun, out = time.time(), os.path.join(home, words[0])
         assert start(*words, "--out", out).wait() == 0
         whole[words[0]], secs[words[0]] = outcome_of(out), time.time() - begun
+    works = {}
+    for kind, words in {"sweep": [*sweep, "--out"], "frames": PICTURES, "data": TABLES}.items():
+        begun, out = time.time(), os.path.join(home, "alone", kind)
+        assert start(*words, out).wait() == 0
+        works[kind] = (words, files_of(out), time.time() - begun)
     any_signal = lambda: random.choice(list(SIGNALS))
     again = lambda words: lambda folder: resumed(folder, any_signal(), words, secs[words[0]], whole[words[0]])
     kinds = [lambda folder: frames_or_gif(folder, any_signal(), False), lambda folder: frames_or_gif(folder, any_signal(), True),
         again(sweep), again(FIGURES), lambda folder: chart_once(any_signal(), charts), full_disk,
-        lambda folder: closed_stream(), lambda folder: bad_folder()]
+        lambda folder: closed_stream(), lambda folder: bad_folder(), lambda folder: two_programs(folder, works)]
     for number in range(FAULTS):
         folder = tempfile.mkdtemp()
         kinds[number % len(kinds)](folder)

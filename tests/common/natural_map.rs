@@ -28,7 +28,8 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     let (start, end) = (motion(before), motion(grains));
     let mut free = start.clone();
     for (k, velocity) in free.0.iter_mut().enumerate() {
-        *velocity += dt * world.gravity.acceleration(before.positions[k]);
+        let falls = f64::from(u8::from(before.feels_gravity[k]));
+        *velocity += falls * dt * world.gravity.acceleration(before.positions[k]);
     }
     let list = simulation.contacts().contacts().iter();
     list.map(|contact| {
@@ -77,7 +78,7 @@ pub fn natural_map(simulation: &Simulation, before: &Grains) -> (f64, f64, f64) 
         error += normal * normal;
         scale += (m_n * formal(contact.free[0])).powi(2);
         outside = outside.max(-p).max(impulse.tangential.abs() - bound);
-        if friction > 0.0 {
+        if friction > 0.0 && simulation.physics().friction {
             let stuck = impulse.tangential - m_t * contact.after[1];
             let tangential = impulse.tangential - stuck.clamp(-bound, bound);
             error += tangential * tangential;

@@ -37,14 +37,53 @@ fn more_threads_than_any_machine_has_are_refused() {
     assert!(said.contains("RAYON_NUM_THREADS is 100000, but must be"), "{said}");
 }
 
+/// The program under a limit of the shell.
+fn limited(limit: &str, line: &str, out: &Path) -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("ulimit {limit}; exec \"$@\""), "sh"]);
+    command.arg(slump("").get_program()).args(line.split(' ')).arg(out);
+    command
+}
+
+const LONG_DATA: &str = "--headless --scene cradle --duration 50 --data-format csv --data";
+
+#[test]
+fn a_stack_that_would_overflow_is_refused() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    for kib in ["512", "192"] {
+        let said = sentence(&mut limited(&format!("-s {kib}"), LONG_DATA, &out));
+        assert!(said.contains(&format!("the limit on the stack in KiB is {kib}, but")), "{said}");
+    }
+    assert!(!out.exists());
+    succeed(&mut limited("-s 1024", "--headless --scene cradle --duration 0.5 --data", &out));
+}
+
+#[test]
+fn too_few_descriptors_are_told_and_what_was_whole_stays() {
+    let folder = folder();
+    let mut refused = 0;
+    for count in 4..16 {
+        let out = folder.path().join(count.to_string());
+        let line = "--headless --scene cradle --duration 0.5 --data-format csv --data";
+        let output = limited(&format!("-n {count}"), line, &out).output().expect("a shell");
+        let said = String::from_utf8_lossy(&output.stderr);
+        if output.status.code() != Some(0) {
+            refused += 1;
+            assert_eq!(output.status.code(), Some(2), "{count}: {said}");
+            assert!(said.contains("Too many open files"), "{said}");
+        }
+        let names = if out.exists() { names_in(&out) } else { Vec::new() };
+        assert!(names.iter().all(|name| !name.contains("tmp")), "{count}: {names:?}");
+    }
+    assert!((3..12).contains(&refused), "{refused} of 12");
+}
+
 #[test]
 fn a_limit_on_the_size_of_files_is_told_and_what_fits_stays() {
     let folder = folder();
     let out = folder.path().join("out");
-    let mut small = Command::new("sh");
-    small.args(["-c", "ulimit -f 64; exec \"$@\"", "sh"]).arg(slump("").get_program());
-    let run = "--headless --scene cradle --duration 50 --data-format csv --data";
-    let said = failure(small.args(run.split(' ')).arg(&out));
+    let said = failure(&mut limited("-f 64", LONG_DATA, &out));
     assert!(said.contains("File too large"), "{said}");
     assert!(out.join("frames.csv").exists());
 }

@@ -1,5 +1,6 @@
 //! Who touches, and methods that solve for the impulses.
 
+mod converged;
 mod detection;
 mod islands;
 mod methods;

@@ -13,7 +13,7 @@ use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
 use super::kinematics::Model;
 use super::methods::{MethodMemory, SolveReport, fall_back, solve_by_method};
-use super::problem::{Bodies, Row, StepProblem, natural_map};
+use super::problem::{Bodies, Row, StepProblem, is_solved};
 use super::settings::{FrictionModel, SolverSettings, StopTest};
 use crate::contact::JoinedGrains;
 use crate::threads;
@@ -67,11 +67,15 @@ pub fn solve<M: Model>(
     let Memory { methods, islands } = memory;
     // Walls that a force drives join what they touch.
     let is_divided = settings.islands && !problem.is_driven() && islands.divide(problem);
-    let report = if is_divided {
+    let mut report = if is_divided {
         islands.solve(problem, settings)
     } else {
         solve_by_method(problem, methods, settings)
     };
+    // What is left in a small island may be little beside what moves in the others.
+    let may_be = report.converged || is_divided && settings.stop == StopTest::Residual;
+    report.converged = may_be && is_solved(problem, settings);
+    report.stalled &= !report.converged;
     // What solves bounds of friction knows of no walls that a force drives.
     let falls_back = M::FRICTION && settings.falls_back() && !problem.is_driven();
     if report.converged || !falls_back {
@@ -169,12 +173,7 @@ impl<M: Model> Islands<M> {
         } else {
             islands.iter_mut().for_each(solve);
         }
-        let mut report = self.join(problem);
-        // What is left in a small island may be little beside what moves in the others.
-        let of_all = !report.converged && settings.stop == StopTest::Residual;
-        report.converged |= of_all && natural_map(problem) <= settings.tolerance;
-        report.stalled &= !report.converged;
-        report
+        self.join(problem)
     }
 
     /// Puts in the place of what was not solved the solution under bounds of friction, island by island.

@@ -17,7 +17,7 @@ use super::nsgs::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
 use crate::contact::law;
 use crate::solver::kinematics::Model;
-use crate::solver::problem::{ContactRows, Row, StepProblem, residual, velocity_error};
+use crate::solver::problem::{ContactRows, Row, StepProblem, is_solved, residual};
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
@@ -218,12 +218,10 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool {
-        let tolerance = settings.tolerance;
-        match settings.stop {
-            StopTest::Residual => return self.residual() <= tolerance,
-            StopTest::VelocityError => return velocity_error(self.problem).is_within(tolerance),
-            StopTest::RelativeChange | StopTest::ImpulsePerMass => {}
+        if settings.stop.judges_solutions() {
+            return is_solved(self.problem, settings);
         }
+        let tolerance = settings.tolerance;
         // Impulses in N·s, and without the shift.
         let (mut squared, mut absolute, mut whole) = (0.0, 0.0, 0.0);
         for ((number, (row, root)), [normal, tangential]) in self.rows().enumerate().zip(before) {
@@ -239,11 +237,12 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
                 add(mass * now_tangential, mass * row.tangential_impulse - root * tangential);
             }
         }
-        match settings.stop {
+        let rests = match settings.stop {
             StopTest::ImpulsePerMass => absolute <= tolerance * self.problem.bodies.mean_mass,
-            // An infinite change is no larger than infinite impulses, and settles nothing.
-            _ => squared.is_finite() && squared <= tolerance * tolerance * whole,
-        }
+            _ => squared <= tolerance * tolerance * whole,
+        };
+        // Impulses may rest where nothing is solved, and then go on.
+        rests && is_solved(self.problem, settings)
     }
 }
 

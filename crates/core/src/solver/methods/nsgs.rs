@@ -6,13 +6,14 @@
 //! projection of the model.
 
 use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
-use super::sweep::{ImpulseChange, squared_impulse};
+use super::sweep::ImpulseChange;
 use crate::contact::{ContactLaw, law};
 use crate::solver::kinematics::Model;
 use crate::solver::method::Ordering;
 use crate::solver::problem::{
     Bodies, BoundedFriction, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow,
-    FrictionProjection, StepProblem, natural_map, velocity_error, with_projection,
+    FrictionProjection, StepProblem, natural_map, squared_impulses, velocity_error,
+    with_projection,
 };
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
@@ -115,17 +116,8 @@ fn tested<M: Model, P: FrictionProjection>(
     let mean_mass = problem.bodies.mean_mass;
     let residual = |problem: &mut _| P::residual::<M>(problem);
     let of_velocities = |problem: &mut _| velocity_error(problem);
-    is_settled(problem, change, mean_mass, settings, squared_impulses, residual, of_velocities)
-}
-
-/// Σ P², (N·s)².
-fn squared_impulses<M: Model>(problem: &mut StepProblem<M>) -> f64 {
-    let squared = |number: usize| {
-        let row = problem.rows.get(number);
-        squared_impulse(row.effective_mass, problem.reduced_impulse(number, row))
-    };
-    let fixed = problem.rows.fixed.len();
-    (0..fixed).map(squared).sum::<f64>() + (fixed..problem.rows.len()).map(squared).sum::<f64>()
+    let squares = |problem: &mut _| squared_impulses(problem);
+    is_settled(problem, change, mean_mass, settings, squares, residual, of_velocities)
 }
 
 /// One pass over all contacts under Coulomb's law.

@@ -163,9 +163,3 @@ impl<M: Model> Row<M> {
         Local { normal, restitution_velocity, effective_mass }
     }
 }
-
-/// P² of an impulse (λ_n, λ_t) of an effective mass, (N·s)².
-#[inline(always)]
-pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
-    mass * mass * (normal * normal + tangential * tangential)
-}

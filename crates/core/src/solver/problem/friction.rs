@@ -15,7 +15,7 @@
 //! the metric diag(1, m_n/m_t). That is Gauss–Seidel's update of a solid disc's contact, whose Delassus
 //! block is diagonal, and the natural map.
 
-use super::residual::{projection_residual, residual};
+use super::residual::{Sums, common_map, projection_map};
 use super::{Row, StepProblem};
 use crate::contact::{ContactLaw, ContactList, Lanes, law};
 use crate::solver::kinematics::Model;
@@ -51,7 +51,12 @@ pub(crate) trait FrictionProjection: Sized {
 
     /// The natural map's residual of this projection.
     fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
-        projection_residual::<M, Self>(problem)
+        Self::map(problem).residual(problem)
+    }
+
+    /// What that is made of.
+    fn map<M: Model>(problem: &StepProblem<M>) -> Sums {
+        projection_map::<M, Self>(problem)
     }
 }
 
@@ -96,8 +101,8 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
         [shifted, law::coulomb(trial[1], law.friction * shifted)]
     }
 
-    fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
-        residual(problem)
+    fn map<M: Model>(problem: &StepProblem<M>) -> Sums {
+        common_map(problem)
     }
 }
 

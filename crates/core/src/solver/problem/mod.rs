@@ -8,6 +8,7 @@ mod friction;
 mod order;
 mod residual;
 mod rows;
+mod solved;
 mod walls;
 
 use glam::DVec2;
@@ -23,6 +24,7 @@ pub use self::residual::{
 };
 pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
+pub(crate) use self::solved::{is_solved, squared_impulse, squared_impulses};
 pub(crate) use self::walls::MovingWalls;
 pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, MovingSurfaces, Surface};
 use super::kinematics::Model;

@@ -18,7 +18,7 @@
 
 use std::ops::Range;
 
-use super::{FrictionProjection, Row, StepProblem, with_projection};
+use super::{FrictionProjection, Row, StepProblem, squared_impulse, with_projection};
 use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
@@ -96,17 +96,20 @@ impl Measures {
 /// formed in m/s and weighted by m_n.
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
+    common_map(problem).residual::<M>(problem)
+}
+
+/// What [`residual`] is made of.
+pub(super) fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
     };
-    sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
+    sum_of_rows(problem, add_error, Sums::add_all)
 }
 
 /// The same of the model of friction that a problem is solved by: the natural map of its projection
 /// (`problem::friction`), over the same scale, so that both can be set side by side.
-pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
-    problem: &StepProblem<M>,
-) -> f64 {
+pub(super) fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         let opening = motion.now[0] + row.restitution_velocity;
@@ -115,7 +118,7 @@ pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
         let allowed = P::project::<M>(&problem.law, problem.friction.now[number], trial);
         sums.add::<M>(row, [normal - allowed[0], tangential - allowed[1]], &motion);
     };
-    sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
+    sum_of_rows(problem, add_error, Sums::add_all)
 }
 
 /// The natural map's residual of what a problem is solved for: of its model of friction, or the common one.
@@ -226,8 +229,8 @@ pub(crate) fn residual_of<M: Model>(
 
 /// The squares of a residual's error and scale.
 #[derive(Default)]
-struct Sums {
-    error: f64,
+pub(crate) struct Sums {
+    pub(super) error: f64,
     scale: f64,
 }
 
@@ -279,14 +282,9 @@ impl Sums {
         }
     }
 
-    fn residual<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
+    pub(super) fn residual<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         if self.error > 0.0 && self.scale == 0.0 {
-            let squared = |row: &Row<M>| {
-                let [normal, tangential] = row.impulse();
-                row.effective_mass.powi(2) * (normal * normal + tangential * tangential)
-            };
-            let impulses: f64 = problem.rows.iter().map(squared).sum();
-            return if self.error <= ROUNDING * ROUNDING * impulses { 0.0 } else { f64::INFINITY };
+            return if self.error.sqrt() <= rounding(problem) { 0.0 } else { f64::INFINITY };
         }
         if self.error > 0.0 { (self.error / self.scale).sqrt() } else { self.error.sqrt() }
     }
@@ -389,6 +387,12 @@ impl GapSums {
 /// rounding left, and no residual. Smaller: methods that scale impulses would not have solved a step in
 /// which nothing happens; larger: errors would go unseen.
 const ROUNDING: f64 = 1e-14;
+
+/// What that leaves of errors, N·s.
+pub(super) fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
+    let squared = |row: &Row<M>| squared_impulse(row.effective_mass, row.impulse());
+    ROUNDING * problem.rows.iter().map(squared).sum::<f64>().sqrt()
+}
 
 /// Relative (normal, tangential) velocities of one contact, m/s: along the tangent relative to a surface that
 /// moves.

@@ -8,8 +8,8 @@ use fearless_simd::{Simd, SimdBase, SimdFrom, f64x4};
 
 use crate::contact::{ContactLaw, Lanes};
 use crate::solver::kinematics::Model;
-use crate::solver::methods::sweep::{ImpulseChange, Local, squared_impulse};
-use crate::solver::problem::{Row, errors, project_by_coulomb};
+use crate::solver::methods::sweep::{ImpulseChange, Local};
+use crate::solver::problem::{Row, errors, project_by_coulomb, squared_impulse};
 
 /// Contacts in a block: the numbers in a register of AVX2. Wider blocks would leave more lanes idle.
 pub(super) const LANES: usize = 4;

@@ -1,0 +1,161 @@
+//! What a step that is called solved must be worth, by sums over world data that no method had a hand in.
+
+use crate::common::natural_map::{judge, natural_map};
+use crate::common::*;
+
+/// ‖e‖ over the ‖ΔP‖ that a stop by changes allows.
+const LEFT: f64 = 8.0;
+
+/// Errors that are rounding, in parts of what contacts carry.
+const ROUNDING: f64 = 1e-12;
+
+/// A disc that falls on a floor: methods have called its steps solved with nothing done.
+fn falling_disc() -> Scene {
+    let disc = moving(0.006 * DVec2::Y, 5e-3, DVec2::ZERO);
+    Scene { boundaries: vec![level()], ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), vec![disc]) }
+}
+
+/// The built-in scenes whose steps world data can judge; those made to break methods alone, or all.
+fn scenes(all: bool) -> Vec<Scene> {
+    let small = [SceneGroup::Paper, SceneGroup::Stability];
+    let is_small = |info: &&SceneInfo| info.name != "pile" && small.contains(&info.group);
+    let infos = SCENES.iter().filter(|info| all || is_small(info));
+    let scenes = infos.map(|info| (info.make)().expect(info.name));
+    let is_still = |boundary: &Boundary| !matches!(boundary, Boundary::Piston { .. });
+    let is_judged = |scene: &Scene| {
+        scene.boundaries.iter().all(is_still)
+            && scene.motions.is_empty()
+            && scene.periodic.is_none()
+            && scene.gravity_turn.is_none()
+    };
+    [falling_disc()].into_iter().chain(scenes).filter(is_judged).collect()
+}
+
+/// Every method by every stop, and those that take them under every model of friction.
+fn solvers() -> Vec<SolverSettings> {
+    let mut solvers = Vec::new();
+    for ((method, model), (stop, tolerance)) in pairs(
+        pairs(Method::ALL.iter().copied(), FrictionModel::SOLVED),
+        [
+            (StopTest::RelativeChange, 1e-6),
+            (StopTest::RelativeChange, 1e-2),
+            (StopTest::ImpulsePerMass, 1e-6),
+            (StopTest::Residual, 1e-6),
+            (StopTest::VelocityError, 1e-4),
+        ],
+    ) {
+        for islands in [false, true] {
+            let max_sweeps = 300;
+            let solver = SolverSettings {
+                stop,
+                tolerance,
+                friction_model: model,
+                islands,
+                ..SolverSettings::to_residual(method, tolerance, max_sweeps)
+            };
+            solvers.extend(solver.validate().is_ok().then_some(solver));
+        }
+    }
+    solvers
+}
+
+/// The bound on the velocities' error under Coulomb's law and what it is held against, m/s.
+fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
+    let restitution = run.parameters().restitution;
+    let friction = if run.physics().friction { run.parameters().friction } else { 0.0 };
+    let world = run.world();
+    let (mut gap, mut undone) = (0.0, 0.0);
+    let mut touches = vec![false; before.len()];
+    let contacts = run.contacts().contacts().iter().zip(run.contacts().impulses());
+    for (judged, (contact, impulse)) in judge(run, before).iter().zip(contacts) {
+        let rebound = restitution * judged.before[0];
+        let p = impulse.normal + judged.cohesion_impulse;
+        let rubs = if run.parameters().cone == FrictionCone::Shifted { p } else { impulse.normal };
+        let opening = judged.after[0] + rebound;
+        gap += p * (opening + 2.0 * (-opening).max(0.0));
+        undone += judged.normal_mass * (judged.free[0] + rebound).powi(2);
+        if friction > 0.0 {
+            gap += friction * rubs.max(0.0) * judged.after[1].abs();
+            gap += impulse.tangential * judged.after[1];
+            undone += judged.tangential_mass * judged.free[1].powi(2);
+        }
+        for body in [contact.grain as usize, contact.other as usize] {
+            if let Some(touches) = touches.get_mut(body) {
+                *touches = true;
+            }
+        }
+    }
+    let masses = touches.iter().zip(&before.masses).filter(|(touches, _)| **touches);
+    let mass: f64 = masses.map(|(_, mass)| mass).sum();
+    let fall = world.gravity.magnitude() * world.mean_diameter;
+    ((gap.max(0.0) / mass).sqrt(), (fall + undone / mass).sqrt())
+}
+
+/// Takes a step, and says what is wrong with it if it is called solved.
+fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result<bool, String> {
+    let before = run.grains().clone();
+    let Ok(&row) = run.step() else { return Ok(false) };
+    if !row.converged || run.contacts().contacts().is_empty() {
+        return Ok(false);
+    }
+    let (error, scale, _) = natural_map(run, &before);
+    // What a model of friction leaves is told over the same scale.
+    let error = row.model_residual.map_or(error, |left| left * scale);
+    let carried = |shift: f64| -> f64 {
+        let judged = judge(run, &before);
+        let both = judged.iter().zip(run.contacts().impulses());
+        let squared = both.map(|(judged, impulse)| {
+            (impulse.normal + shift * judged.cohesion_impulse).powi(2) + impulse.tangential.powi(2)
+        });
+        squared.sum::<f64>().sqrt()
+    };
+    let masses = &run.grains().masses;
+    let mean_mass = masses.iter().sum::<f64>() / masses.len() as f64;
+    let tolerance = solver.tolerance;
+    let (left, allowed) = match solver.stop {
+        StopTest::RelativeChange => (error, LEFT * tolerance * carried(0.0)),
+        StopTest::ImpulsePerMass => (error, LEFT * tolerance * mean_mass),
+        StopTest::Residual => (error, tolerance * scale),
+        StopTest::VelocityError => {
+            let (bound, scale) = velocity_error(run, &before);
+            (row.model_residual.map_or(bound, |_| row.velocity_error), tolerance * scale)
+        }
+    };
+    if left <= (1.0 + 1e-6) * allowed + ROUNDING * carried(1.0) {
+        return Ok(true);
+    }
+    Err(format!("solved with {left:e} left of at most {allowed:e}; residual {:e}", row.residual))
+}
+
+/// Every `nth` of all scenes by all solvers for so many steps each; how many steps were called solved, and by
+/// whom falsely.
+fn look(scenes: Vec<Scene>, nth: usize, steps: usize) -> (usize, Vec<String>) {
+    let (mut solved, mut wrong) = (0, Vec::new());
+    for (scene, solver) in pairs(scenes, solvers()).into_iter().step_by(nth) {
+        let name = format!("{}, {solver:?}", scene.name);
+        let scene = Scene { solver, stepper: Stepper::Moreau, ..scene };
+        let Ok(mut run) = scene.simulation() else { continue };
+        for step in 1..=steps {
+            match step_is_what_it_says(&mut run, &solver) {
+                Ok(is_solved) => solved += usize::from(is_solved),
+                Err(what) => wrong.push(format!("step {step}: {what}: {name}")),
+            }
+        }
+    }
+    (solved, wrong)
+}
+
+#[test]
+fn no_step_is_called_solved_that_is_not() {
+    let (solved, wrong) = look(scenes(false), 5, 40);
+    assert!(wrong.is_empty(), "{} of {solved}: {:#?}", wrong.len(), &wrong[..wrong.len().min(20)]);
+    assert!(solved > 1000, "{solved} steps were called solved");
+}
+
+#[test]
+#[ignore = "minutes: all scenes"]
+fn no_step_of_any_scene_is_called_solved_that_is_not() {
+    let (solved, wrong) = look(scenes(true), 1, 200);
+    println!("{solved} steps were called solved");
+    assert!(wrong.is_empty(), "{} of {solved}: {:#?}", wrong.len(), &wrong[..wrong.len().min(20)]);
+}
