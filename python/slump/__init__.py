@@ -13,11 +13,13 @@ units.
 from __future__ import annotations
 
 from . import _settings
+from ._budget import Budget, budget
 from ._errors import Error, FileError, InputError, NotFiniteError, SlumpWarning
 from ._slump import Simulation, __version__, methods, options, scene, scenes, solve, steppers
 from ._solution import Solution
 
 __all__ = [
+    "Budget",
     "Error",
     "FileError",
     "InputError",
@@ -26,6 +28,7 @@ __all__ = [
     "SlumpWarning",
     "Solution",
     "__version__",
+    "budget",
     "methods",
     "options",
     "scene",

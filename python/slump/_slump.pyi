@@ -11,6 +11,7 @@ from ._solution import Solution
 
 __all__ = [
     "scene",
+    "_budget",
     "_kinds",
     "methods",
     "options",
@@ -217,6 +218,16 @@ def steppers() -> dict[str, str]: ...
 def methods() -> dict[str, str]: ...
 def options() -> dict[str, str]: ...
 def _kinds() -> dict[str, str | list[str]]: ...
+def _budget(
+    quantities: Sequence[str],
+    folder: _Path,
+    cost_secs: float,
+    *,
+    begin: float | None = None,
+    end: float | None = None,
+    within: float | None = None,
+    **options: Any,
+) -> str: ...
 def solve(
     problem: _Path | Mapping[str, Any],
     method: str = "nsgs",

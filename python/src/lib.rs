@@ -3,6 +3,7 @@
 
 #![warn(unreachable_pub)]
 
+mod budgets;
 mod conversion;
 mod options;
 mod problems;
@@ -16,6 +17,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _slump {
+    #[pymodule_export]
+    use super::budgets::_budget;
     #[pymodule_export]
     use super::options::{_kinds, methods, options, scenes, steppers};
     #[pymodule_export]

@@ -42,6 +42,9 @@ pub(super) enum StudyCommand {
         /// Throw away what the folder holds of another study, or what cannot be read
         #[arg(long)]
         redo: bool,
+        /// Print a command a run, for GNU parallel or a cluster's queue, and run nothing; `slump sweep merge` joins the runs
+        #[arg(long, conflicts_with_all = ["shard", "redo"])]
+        list: bool,
         #[command(subcommand)]
         command: Option<SweepAction>,
     },
@@ -194,10 +197,14 @@ impl StudyCommand {
                 print_line(Study::read(&study, quick)?.runs.len());
                 Ok(())
             }
-            Self::Sweep { study, out, shard, quick, redo, command: None } => {
+            Self::Sweep { study, out, shard, quick, redo, list, command: None } => {
                 let missing = |field| Error::value(field, "missing", "given");
-                let study = Study::read(&study.ok_or_else(|| missing("study"))?, quick)?;
+                let path = study.ok_or_else(|| missing("study"))?;
+                let study = Study::read(&path, quick)?;
                 let out = out.ok_or_else(|| missing("out"))?;
+                if list {
+                    return list_runs(&path, study.runs.len(), &out, quick);
+                }
                 let shard = shard.map(|text| text.parse::<Shard>()).transpose()?;
                 match sweep(&study, &out, &SweepOptions { shard, redo, states: None })? {
                     Some(table) => report_runs(&table, &out),
@@ -256,6 +263,22 @@ fn secs_of(text: &str) -> std::result::Result<f64, String> {
     };
     let secs = number.trim().parse().map(|number: f64| unit * number).map_err(|_| allowed())?;
     if secs > 0.0 && secs.is_finite() { Ok(secs) } else { Err(allowed()) }
+}
+
+/// A command for each run of a study, which may be given again where it was stopped.
+fn list_runs(study: &Path, runs: usize, out: &Path, quick: bool) -> Result<()> {
+    let quoted = |path: &Path| {
+        let allowed = "a name that a shell can be given";
+        let path = path.to_str().ok_or_else(|| Error::value("out", path.display(), allowed))?;
+        let quoted = shlex::try_quote(path);
+        quoted.map(String::from).map_err(|_| Error::value("out", path, allowed))
+    };
+    let (study, out) = (quoted(study)?, quoted(out)?);
+    let quick = if quick { " --quick" } else { "" };
+    for run in 1..=runs {
+        print_line(format_args!("slump sweep {study} --out {out} --shard {run}/{runs}{quick}"));
+    }
+    Ok(())
 }
 
 fn report_runs(table: &RunsTable, folder: &Path) {

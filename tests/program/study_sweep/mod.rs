@@ -460,3 +460,26 @@ substeps = 1
     assert!(again.contains("2 of 2 runs were there"), "{again}");
     assert_eq!(runs(&out), table);
 }
+
+#[test]
+fn a_command_a_run_is_listed_and_together_they_come_to_the_same() {
+    let folder = folder();
+    let study = study(
+        folder.path(),
+        "name = 'two'\n[base]\nscene = 'cradle'\nduration = 0.5\n[vary]\nstart = [7.0, 8.0]\n",
+    );
+    let out = folder.path().join("of a list");
+    let listed = run(&mut sweep(&study, &out, &["--list"]));
+    let listed = String::from_utf8(listed.stdout).expect("text");
+    assert_eq!(listed.lines().count(), 2, "{listed}");
+    assert!(!out.exists(), "nothing is run");
+    for line in listed.lines() {
+        let program = slump("").get_program().to_str().expect("UTF-8").to_owned();
+        let command = line.replacen("slump", &program, 1);
+        succeed(Command::new("sh").args(["-c", &command]));
+        // As a queue does that starts it anew.
+        succeed(Command::new("sh").args(["-c", &command]));
+    }
+    succeed(slump("sweep").arg("merge").arg(&study).arg(&out));
+    assert_eq!(runs(&out), in_one_go(folder.path(), &study));
+}

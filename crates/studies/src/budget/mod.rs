@@ -63,9 +63,12 @@ pub struct ErrorBudget {
 }
 
 impl ErrorBudget {
-    /// Name, answer in words, and verdict of each quantity.
-    pub fn answers(&self) -> impl Iterator<Item = (&str, &str, Trust)> {
-        self.quantities.iter().map(|one| (&*one.quantity, &*one.answer, one.trust))
+    /// All of it, as `budget.json` has it.
+    ///
+    /// # Errors
+    /// Where it cannot be said in JSON.
+    pub fn to_json(&self) -> Result<String> {
+        serde_json::to_string_pretty(self).map_err(|error| Error::file("budget.json", error))
     }
 }
 

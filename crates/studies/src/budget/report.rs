@@ -7,15 +7,14 @@ use super::ErrorBudget;
 use super::answer::{CauseRow, QuantityBudget};
 use super::causes::{Share, short};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::output::write_file;
 use crate::report::{ReportTable, write_sheet};
 
 pub(super) const REPORT: &str = "report.md";
 
 pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
-    let json =
-        serde_json::to_string_pretty(budget).map_err(|error| Error::file("budget.json", error))?;
+    let json = budget.to_json()?;
     write_file(&folder.join("budget.json"), format!("{json}\n").as_bytes())?;
     let mut csv = Vec::new();
     let mut text = format!(
@@ -36,7 +35,13 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
         };
         csv.extend_from_slice(&rows[skipped..]);
         let name = format!("budget-{number}");
-        let _ = write!(text, "\n## {}\n\n{}\n\n", one.quantity, one.answer);
+        let _ = write!(
+            text,
+            "\n## {}\n\nCan it be trusted? **{}**\n\n{}\n\n",
+            one.quantity,
+            one.trust.words(),
+            one.answer
+        );
         if one.value.is_some() {
             write_sheet(folder, &name, &sheet(budget, one), "slump budget")?;
             let _ = write!(text, "![{name}]({name}.png)\n\n");
