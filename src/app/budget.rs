@@ -41,8 +41,8 @@ impl Budget {
 /// Forty sweeps, by all cores.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
-    hint: "40 sweeps a step, solved or not, for large piles: slump is off by about 0.11 in the mean, as much as \
-           by Δt itself. A step of 10,000 grains takes some 10 ms.",
+    hint: "40 sweeps a step, solved or not, for large piles, whose slump hardly feels it; that of a small pile may be \
+           off by a tenth. A step of 10,000 grains takes some 10 ms.",
     settings: SolverSettings {
         fallback: Fallback::None,
         ..SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40)
@@ -54,7 +54,7 @@ pub(super) const FAST: Budget = Budget {
 pub(super) const PAPER: Budget = Budget {
     name: "Paper",
     hint: "The paper's scheme: Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are \
-           computed, the same to the last digit. A quarter of the steps stay unsolved.",
+           computed, the same to the last digit. Some steps stay unsolved.",
     settings: SolverSettings::PAPER,
     is_certain: false,
 };
@@ -63,7 +63,7 @@ pub(super) const PAPER: Budget = Budget {
 pub(super) const COULOMB: Budget = Budget {
     name: "Coulomb",
     hint: "Coulomb's law itself, by Newton's method: some steps have no solution that it finds. Slumps are those of \
-           Certified, at several times the cost.",
+           Certified, at a higher cost.",
     settings: SolverSettings {
         friction_model: FrictionModel::Coulomb,
         max_sweeps: 500,
@@ -75,7 +75,7 @@ pub(super) const COULOMB: Budget = Budget {
 /// What everything begins with.
 pub(super) const CERTIFIED: Budget = Budget {
     name: "Certified",
-    hint: "Each step is solved within bounds of friction that the step before gives (tresca), and velocities are \
+    hint: "Each step is solved within bounds of friction that a first solve gives (tresca), and velocities are \
            certain to 1e-4 of the root of g d. Slumps are those of Coulomb's law.",
     settings: SolverSettings::DEFAULT,
     is_certain: true,

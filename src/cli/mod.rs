@@ -5,7 +5,7 @@ mod studies;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 
 #[cfg(feature = "window")]
 use crate::app::WindowOptions;
@@ -17,7 +17,8 @@ use crate::output::{
     Progress, check_file, ignore_file_size_signal, lost_stdout, note_line, note_printed,
     print_line, print_text, warn_of_steps, write_file,
 };
-use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, built_in, deposit};
+use crate::setting::Value;
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, SolverSettings, StopTest};
 use crate::threads::check_threads;
@@ -58,8 +59,12 @@ enum CliCommand {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// List the built-in scenes and the methods
-    List,
+    /// List the built-in scenes, steppers, methods and models of friction
+    List {
+        /// These alone
+        #[arg(value_name = "WHAT")]
+        what: Option<Listed>,
+    },
     /// Write the contact problem of one step to a file, or solve such a file alone
     Problem {
         #[command(subcommand)]
@@ -73,6 +78,41 @@ enum CliCommand {
         #[command(flatten)]
         config: Box<Config>,
     },
+}
+
+/// The options that `-h` tells of; `--help` has all.
+const FIRST: [&str; 16] = [
+    "scene", "grains", "seed", "preset", "duration", "stepper", "bond", "dt", "rho", "mu",
+    "solver", "headless", "frames", "gif", "data", "help",
+];
+
+const EXAMPLES: &str = "Examples:
+  slump --bond 20 --dt 5e-3                           # the window, with a cohesive pile
+  slump --headless --frames out/ --scene cradle       # pictures, and a row a step
+  slump --headless --data run/ --bond 50              # all grains and contacts, for other programs
+  slump budget --bond 20 --out budget/                # physics, time step or solver?
+  slump list scenes";
+
+/// The command line, of which `-h` tells the most important part. Settings say what the shipped pile has.
+fn command() -> clap::Command {
+    let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
+    let told = |arg: clap::Arg| {
+        let name = arg.get_id().as_str();
+        let default = pile.and_then(|settings| settings.get(name)).map(|value| match value {
+            Value::Number(number) => number.to_string(),
+            Value::Count(count) => count.to_string(),
+            Value::Switch(on) => on.to_string(),
+            Value::Word(word) => word.to_owned(),
+        });
+        let is_first = FIRST.contains(&name);
+        let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+        let arg = match default {
+            Some(default) => arg.long_help(format!("{help} [pile: {default}]")),
+            None => arg,
+        };
+        arg.hide_short_help(!is_first)
+    };
+    Cli::command().mut_args(told).after_help(EXAMPLES)
 }
 
 /// Exit code of all that went wrong, but for a signal.
@@ -101,14 +141,18 @@ pub fn main() -> ExitCode {
 /// The command line that was given; none where it asked for help or the version. Its frame is one of the largest there are.
 #[inline(never)]
 fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
-    Cli::try_parse().map(Some).or_else(|error| match error.use_stderr() {
-        true => Err((REFUSED, refusal_of(&error, Cli::command()))),
-        // Help and version.
-        false => {
-            note_printed(error.print());
-            Ok(None)
-        }
-    })
+    command()
+        .try_get_matches()
+        .and_then(|matches| <Cli as clap::FromArgMatches>::from_arg_matches(&matches))
+        .map(Some)
+        .or_else(|error| match error.use_stderr() {
+            true => Err((REFUSED, refusal_of(&error, command()))),
+            // Help and version.
+            false => {
+                note_printed(error.print());
+                Ok(None)
+            }
+        })
 }
 
 /// Stack of the first thread that is enough for all commands: runs were seen to need more than 512 KiB and less than 768.
@@ -132,8 +176,11 @@ fn run(cli: Cli) -> Result<()> {
             let box_width_in_diameters = box_width;
             generate(&NewPile { grains, box_width_in_diameters, seed, deposition }, &out)
         }
-        Some(CliCommand::List) => {
-            list();
+        Some(CliCommand::List { what }) => {
+            Listed::value_variants()
+                .iter()
+                .filter(|listed| what.is_none_or(|what| what == **listed))
+                .for_each(|listed| listed.print());
             Ok(())
         }
         Some(CliCommand::Problem { command }) => command.run(),
@@ -153,38 +200,49 @@ fn run(cli: Cli) -> Result<()> {
 }
 
 /// Prints the built-in scenes, the steppers, the methods and the models of friction.
-fn list() {
-    for &group in SceneGroup::ALL {
-        print_line(format_args!("{}:", group.hint()));
-        for scene in SCENES.iter().filter(|scene| scene.group == group) {
-            print_line(format_args!("  {:14} {}", scene.name, scene.summary));
+/// What there is to choose from.
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Listed {
+    Scenes,
+    Steppers,
+    Methods,
+    FrictionModels,
+}
+
+impl Listed {
+    fn print(self) {
+        let row = |name: &str, about: &str| print_line(format_args!("  {name:14} {about}"));
+        match self {
+            Self::Scenes => {
+                for &group in SceneGroup::ALL {
+                    print_line(format_args!("{}:", group.hint()));
+                    let of_group = SCENES.iter().filter(|scene| scene.group == group);
+                    of_group.for_each(|scene| row(scene.name, scene.summary));
+                }
+            }
+            Self::Steppers => {
+                print_line("Steppers:");
+                for stepper in Stepper::ALL {
+                    let info = stepper.info();
+                    row(stepper.name(), stepper.hint());
+                    row("", &format!("solves {} ({})", info.solves, info.source));
+                    row("", &format!("reads {}", info.settings.replace(' ', ", ")));
+                }
+            }
+            Self::Methods => {
+                print_line("Methods, for steppers that solve each step's problem by one:");
+                for info in METHODS {
+                    row(info.name, info.summary);
+                    row("", &format!("solves {} ({})", info.solves, info.source));
+                }
+            }
+            Self::FrictionModels => {
+                let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
+                let takers = takers.collect::<Vec<_>>().join(", ");
+                print_line(format_args!("Models of friction, those beside coulomb for {takers}:"));
+                FrictionModel::SOLVED.iter().for_each(|model| row(model.name(), model.hint()));
+            }
         }
-    }
-    print_line(format_args!("Steppers:"));
-    for stepper in Stepper::ALL {
-        print_line(format_args!("  {:14} {}", stepper.name(), stepper.hint()));
-        print_line(format_args!(
-            "  {:14} solves {} ({})",
-            "",
-            stepper.info().solves,
-            stepper.info().source
-        ));
-        print_line(format_args!(
-            "  {:14} reads {}",
-            "",
-            stepper.info().settings.replace(' ', ", ")
-        ));
-    }
-    print_line(format_args!("Methods, for steppers that solve each step's problem by one:"));
-    for info in METHODS {
-        print_line(format_args!("  {:14} {}", info.name, info.summary));
-        print_line(format_args!("  {:14} solves {} ({})", "", info.solves, info.source));
-    }
-    let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
-    let takers: Vec<_> = takers.collect();
-    print_line(format_args!("Models of friction, those beside coulomb for {}:", takers.join(", ")));
-    for model in FrictionModel::SOLVED {
-        print_line(format_args!("  {:14} {}", model.name(), model.hint()));
     }
 }
 

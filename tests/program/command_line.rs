@@ -222,3 +222,30 @@ fn waiting_for_a_common_scale_changes_no_picture() {
         assert_eq!(bytes(all.path().join(name)), one);
     }
 }
+
+#[test]
+fn commands_are_taken_as_people_guess_them_and_the_short_help_is_short() {
+    let scene = |line: &str| {
+        let output = run(slump("scene --scene thin-wall").args(line.split_whitespace()));
+        assert!(output.status.success(), "{line}: {}", said(&output));
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let guessed = "--time-step 2e-3 --friction 0.2 --restitution 0.3 --method Newton --speculative --cone COMPRESSIVE";
+    let exact =
+        "--dt 2e-3 --mu 0.2 --rho 0.3 --solver newton --speculative true --cone compressive";
+    assert_eq!(scene(guessed), scene(exact));
+    assert_ne!(scene(exact), scene(""));
+
+    let help = |option: &str| String::from_utf8(run(&mut slump(option)).stdout).expect("text");
+    let (short, long) = (help("-h"), help("--help"));
+    let options =
+        |text: &str| text.lines().filter(|line| line.trim_start().starts_with("--")).count();
+    assert!((10..=20).contains(&options(&short)), "{short}");
+    assert!(options(&long) > 50 && long.contains("[pile: 0.001]"), "{long}");
+    assert!(short.contains("Examples:"), "{short}");
+
+    let listed = |what: &str| String::from_utf8(run(&mut slump(what)).stdout).expect("text");
+    let parts = ["scenes", "steppers", "methods", "friction-models"];
+    let all: String = parts.iter().map(|part| listed(&format!("list {part}"))).collect();
+    assert_eq!(all, listed("list"));
+}

@@ -17,7 +17,7 @@ words! {
     /// Settings that go together.
     pub enum Preset {
         Paper = "paper", "The paper's scheme as its figures are computed: Gauss-Seidel to a relative change of 1e-7";
-        Robust = "robust", "Every known remedy: hard scenes hold, and the paper's effects of the time step are gone";
+        Robust = "robust", "Remedies together: hard scenes hold, and the paper's effects of the time step are gone";
     }
 }
 

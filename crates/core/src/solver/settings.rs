@@ -14,7 +14,7 @@ words! {
         Residual = "residual", "the residual that judges all methods";
         #[default]
         VelocityError = "velocity-error",
-            "a bound on the root mean square of the velocities' error over √(g d), d the mean diameter";
+            "a bound on the root mean square of the velocities' error, over √(g d) together with what contacts undo";
     }
 }
 
@@ -64,8 +64,8 @@ impl FrictionModel {
         matches!(self, Self::Tresca | Self::Desaxce)
     }
 
-    /// True where it allows the impulses of a cone, the shifted one alone. The compressive cone with cohesion is no convex set: its
-    /// convex hull is the shifted cone.
+    /// True where it allows the impulses of a cone, the shifted one alone: the compressive cone with cohesion is no
+    /// convex set, and its convex hull is the shifted cone.
     pub(crate) fn is_on_cone(self) -> bool {
         matches!(self, Self::Associated | Self::Desaxce)
     }

@@ -88,14 +88,27 @@ fn option(about: &About) -> Arg {
         Kind::Switch => clap::value_parser!(bool),
         Kind::Word(words) => possible(words).into(),
     };
-    Arg::new(about.name)
+    let option = Arg::new(about.name)
         .long(about.name)
         .value_name(about.value_name)
         .help(about.help)
         .help_heading(about.heading)
         .allow_negative_numbers(about.kind == Kind::Number)
-        .value_parser(parser)
+        .ignore_case(true)
+        .value_parser(parser);
+    let option = match about.kind {
+        Kind::Switch => option.num_args(0..=1).default_missing_value("true"),
+        _ => option,
+    };
+    match ALIASES.iter().find(|(name, _)| *name == about.name) {
+        Some((_, alias)) => option.visible_alias(alias),
+        None => option,
+    }
 }
+
+/// What people call settings that have a short name.
+const ALIASES: [(&str, &str); 4] =
+    [("dt", "time-step"), ("rho", "restitution"), ("mu", "friction"), ("solver", "method")];
 
 /// What is given of a setting.
 fn given(about: &About, matches: &ArgMatches) -> Option<Value> {
@@ -106,7 +119,10 @@ fn given(about: &About, matches: &ArgMatches) -> Option<Value> {
         Kind::Switch => matches.get_one(name).copied().map(Value::Switch),
         Kind::Word(words) => {
             let said: &String = matches.get_one(name)?;
-            words.iter().find(|word| word.name == said).map(|word| Value::Word(word.name))
+            words
+                .iter()
+                .find(|word| word.name.eq_ignore_ascii_case(said))
+                .map(|word| Value::Word(word.name))
         }
     }
 }
