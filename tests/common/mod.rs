@@ -53,7 +53,7 @@ pub fn ranged(
 ) -> Scene {
     Scene {
         stepper: Stepper::Range,
-        solver: SolverSettings::SWEEPS,
+        solver: SolverSettings::default(),
         parameters: Parameters { debonding_distance: DISTANCE_IN_DIAMETERS, ..parameters },
         ..scene(physics, gravity, parameters, grains)
     }
@@ -66,6 +66,11 @@ pub fn weightless(grain: Grain) -> Grain {
 /// As far as rounding allows.
 pub fn tight() -> SolverSettings {
     to_residual(1e-12)
+}
+
+/// As by default, but nearly as far as rounding allows.
+pub fn certain() -> SolverSettings {
+    SolverSettings { tolerance: 1e-10, ..SolverSettings::default() }
 }
 
 pub fn solved_by(method: Method, tolerance: f64) -> SolverSettings {

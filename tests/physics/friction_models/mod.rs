@@ -31,8 +31,8 @@ fn what_does_not_go_with_a_model_is_refused_in_one_sentence() {
             &|scene| scene.solver.method = Method::Newton,
         ),
         (
-            "friction-model is tresca, but must be coulomb where stepper is range: other models go with moreau",
-            &|scene| scene.stepper = Stepper::Range,
+            "friction-model is tresca, but must be coulomb where stepper is dem: other models go with moreau and range",
+            &|scene| scene.stepper = Stepper::Dem,
         ),
         ("cone is compressive, but must be shifted where friction-model is…", &|scene| {
             scene.parameters.cone = FrictionCone::Compressive;

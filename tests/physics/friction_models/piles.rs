@@ -261,7 +261,7 @@ fn every_step_of_a_pile_that_slumps_is_certified() {
     }
 }
 
-/// The bound on the velocities' error, m/s: the root of Σ m (σ(w + 2z) + g|v| + λv) over the mass of what touches, from
+/// The bound on the velocities' error, m/s: the root of Σ m (σ(w + 2z) + z² + g|v| + λv) over the mass of what touches, from
 /// world data, as `solver::problem::residual` states it.
 fn error_of_world(run: &Simulation, pile: &Scene, bounds: &[f64], before: &Simulation) -> f64 {
     let mut gap = 0.0;
@@ -282,6 +282,7 @@ fn error_of_world(run: &Simulation, pile: &Scene, bounds: &[f64], before: &Simul
         };
         let lacking = (least - w).max(0.0);
         gap += p * (w + 2.0 * lacking) + bound * v.abs() + impulse.tangential * v;
+        gap += contact.normal_mass * lacking * lacking;
     }
     let grains = run.grains();
     let touches = |grain: &usize| {

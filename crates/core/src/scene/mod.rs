@@ -1,6 +1,8 @@
 //! Scenes: what is simulated, with which physics, numbers and solver. The built-in ones are
 //! listed in [`SCENES`].
 
+#[cfg(test)]
+mod certificates;
 mod deposition;
 mod description;
 pub mod experiments;

@@ -6,7 +6,7 @@ use crate::contact::most_contacts_joined;
 use crate::sim::Settings;
 use crate::sim::simulation::Simulation;
 use crate::sim::steppers::{FractureWork, Stepper};
-use crate::solver::{FrictionModel, Method, picked};
+use crate::solver::{Method, picked};
 use crate::world::Gravity;
 
 impl Simulation {
@@ -19,11 +19,8 @@ impl Simulation {
     /// The method that solves a problem as large as that of the last step, or as its largest island where islands are
     /// solved by themselves: that of the settings, or the one that `auto` picks.
     pub fn picked_method(&self) -> Method {
-        let Settings { solver, stepper, .. } = &self.settings;
-        let model = match stepper.reads("friction-model") {
-            true => solver.model(self.is_driven()),
-            false => FrictionModel::Coulomb,
-        };
+        let Settings { solver, .. } = &self.settings;
+        let model = solver.model(self.is_driven());
         picked(solver, model, || self.contacts_together(), self.is_driven())
     }
 

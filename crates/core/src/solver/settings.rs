@@ -251,11 +251,6 @@ impl SolverSettings {
         self.model(false) != FrictionModel::Coulomb || self.falls_back()
     }
 
-    /// The same under Coulomb's law.
-    pub(crate) fn with_coulombs_law(self) -> Self {
-        Self { friction_model: FrictionModel::Coulomb, ..self }
-    }
-
     /// The same without a model of friction of its own, which leaves it to the method.
     pub(crate) fn without_model(self) -> Self {
         Self { friction_model: FrictionModel::OfMethod, ..self }

@@ -119,7 +119,7 @@ impl Advance for StepperMemory {
     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
         match settings.stepper {
             Stepper::Moreau => moreau::advance(stage, settings),
-            Stepper::Range => range::advance(stage, &range::own(settings), &mut self.range),
+            Stepper::Range => range::advance(stage, settings, &mut self.range),
             Stepper::TgsSoft => tgs_soft::advance(stage, settings),
             Stepper::Avbd => avbd::advance(stage, settings),
             Stepper::Dem => dem::advance(stage, settings),
@@ -131,7 +131,7 @@ impl StepperMemory {
     /// Detects the contacts of the next step and sets up its problem, as it is before any solution.
     pub(super) fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
-            Stepper::Range => range::prepare(stage, &range::own(settings)),
+            Stepper::Range => range::prepare(stage, settings),
             _ => moreau::set_up(stage, settings),
         }
     }
@@ -141,7 +141,7 @@ impl StepperMemory {
     #[inline(never)]
     pub(super) fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
-            Stepper::Range => range::set_up(stage, &range::own(settings), &mut self.range),
+            Stepper::Range => range::set_up(stage, settings, &mut self.range),
             _ => moreau::set_up(stage, settings),
         }
         if settings.stepper == Stepper::Moreau && settings.remedies.sequential_impacts {

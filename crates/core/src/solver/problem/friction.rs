@@ -17,7 +17,7 @@
 
 use super::residual::{Sums, common_map, projection_map};
 use super::{Row, StepProblem};
-use crate::contact::{ContactLaw, ContactList, Lanes, law};
+use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
@@ -151,8 +151,13 @@ impl FrictionProjection for ConeFriction {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Says by which model a problem is to be solved whose rows and velocities are there.
-    pub(super) fn begin_friction(&mut self, contacts: &ContactList, model: FrictionModel) {
+    /// Says by which model a problem is to be solved whose rows and velocities are there; `last_solved` gives P_n
+    /// (N·s) of the last solve of a contact, or nothing where it has met none.
+    pub(crate) fn begin_friction(
+        &mut self,
+        model: FrictionModel,
+        last_solved: impl Fn(usize) -> Option<f64>,
+    ) {
         self.friction.model = model;
         let mut lagged = std::mem::take(&mut self.friction.at_start);
         lagged.clear();
@@ -161,13 +166,12 @@ impl<M: Model> StepProblem<M> {
             FrictionModel::Coulomb | FrictionModel::OfMethod => {}
             FrictionModel::Tresca => {
                 lagged.extend(self.rows().map(|(number, row)| {
-                    let index = self.rows.contacts[number] as usize;
-                    if contacts.is_unsolved(index) {
-                        return UNSET_BOUND;
-                    }
-                    let normal_impulse = contacts.impulses()[index].normal / row.effective_mass;
-                    let shifted = law::signorini(normal_impulse + self.capture(number));
-                    self.law.friction_bound(shifted)
+                    let last = last_solved(self.rows.contacts[number] as usize);
+                    last.map_or(UNSET_BOUND, |normal_impulse| {
+                        let reduced = normal_impulse / row.effective_mass;
+                        let shifted = law::signorini(reduced + self.capture(number));
+                        self.law.friction_bound(shifted)
+                    })
                 }));
             }
             FrictionModel::Associated => lagged.resize(self.rows.len(), 0.0),
@@ -185,6 +189,13 @@ impl<M: Model> StepProblem<M> {
     pub(crate) fn restart_friction(&mut self) {
         let LaggedFriction { at_start, now, .. } = &mut self.friction;
         now.clone_from(at_start);
+    }
+
+    /// Takes the lagged numbers anew, for all solves that are still to come of the step.
+    pub(crate) fn go_on_from_present(&mut self) {
+        self.renew_friction();
+        let LaggedFriction { at_start, now, .. } = &mut self.friction;
+        at_start.clone_from(now);
     }
 
     /// Bounds friction by what Coulomb's law allows at the present impulses.

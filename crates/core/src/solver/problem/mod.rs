@@ -115,7 +115,7 @@ impl<M: Model> StepProblem<M> {
             self.add_surfaces(contacts, &rebound, surfaces);
         }
         self.form_velocities();
-        self.begin_friction(contacts, settings.model(self.is_driven()));
+        self.begin_friction(settings.model(self.is_driven()), |index| contacts.last_solved(index));
     }
 
     /// Packs the bodies as they are, and as gravity alone would leave them.
@@ -199,6 +199,13 @@ impl<M: Model> StepProblem<M> {
         }
         let masses = bodies.masses.iter().zip(&*touches);
         *touching_mass = masses.map(|(mass, touches)| if *touches { *mass } else { 0.0 }).sum();
+    }
+
+    /// Has errors of velocities held against what they are in a problem of which this one has some rows.
+    pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
+        self.fall_speed = whole.fall_speed;
+        self.touches.clone_from(&whole.touches);
+        self.touching_mass = whole.touching_mass;
     }
 
     /// The mass of the bodies that have contacts, kg.

@@ -8,10 +8,12 @@
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
 //!
-//! each term ≥ 0. With what z itself is worth at the present impulses, Σ m_ij σz, this duality gap bounds
-//! ‖V − V*‖²_M, V* the velocities of the solution, since the energy grows as the square of the distance from there.
-//! Over the mass of the grains that touch something it bounds the mean square of the velocities' error, whatever
-//! solved the problem.
+//! each term ≥ 0. Since (p − p*)·H(V − V*) is ‖V − V*‖²_M, with p* and V* those of the solution, and no contact there lacks
+//! anything, ‖V − V*‖²_M is at most that sum and Σ m_ij z(σ* − σ). Nobody knows σ*. It is taken for no more than 2σ + z, twice
+//! the present impulse and what would end the lack of the contact by itself, which adds Σ m_ij z(σ + z): without z², a
+//! light disc that a heavy one has just driven into the floor, whose contact carries next to nothing yet, would be
+//! solved. In what still moves much a sweep it may be more. Over the mass of the grains that touch something the sum
+//! bounds the mean square of the velocities' error.
 //!
 //! Coulomb's law has no dual. There g is the bound μσ that the impulses have themselves: V* is then the solution under
 //! these bounds, and the gap is 0 where Coulomb's law is solved and nowhere else.
@@ -352,7 +354,7 @@ impl GapSums {
         let across = now[1].abs();
         let least = if on_cone { problem.law.friction * across } else { 0.0 };
         let lacking = (least - opening).max(0.0);
-        let mut of_contact = shifted * (opening + 2.0 * lacking);
+        let mut of_contact = shifted * (opening + 2.0 * lacking) + lacking * lacking;
         if M::FRICTION {
             of_contact += tangential * now[1];
             if !on_cone {

@@ -27,18 +27,14 @@ use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Model, SolveReport, StopTest};
+use crate::solver::{Approach, Model, SolveReport, SolverSettings};
 use crate::world::{FrictionCone, Parameters, World};
-
-/// The residual that leaves velocities about as far off as a bound on their error would, over that bound in √(g d):
-/// piles of 138 grains that Newton's method solves to a residual of 1e-6 have bounds of 3e-5 to 9e-5.
-const RESIDUAL_OVER_VELOCITY_ERROR: f64 = 1e-2;
 
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
     source: "bonds that cost the work C₀δc; shocks apart from loads",
     settings: "bond dt tilt rho mu cone restitution-threshold debonding-distance solver \
-        ordering stop tolerance max-sweeps warm-start fallback islands",
+        ordering stop tolerance max-sweeps warm-start friction-model model-solves fallback islands",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
     check: |parameters| match parameters.cone {
@@ -118,18 +114,6 @@ impl StepCut {
     }
 }
 
-/// What its problems are solved with: under Coulomb's law, since a step holds problems of several lengths, and bounds of
-/// one are none of another.
-pub(super) fn own(settings: &Settings) -> Settings {
-    let mut own = *settings;
-    own.solver = own.solver.with_coulombs_law();
-    if own.solver.stop == StopTest::VelocityError {
-        own.solver.stop = StopTest::Residual;
-        own.solver.tolerance *= RESIDUAL_OVER_VELOCITY_ERROR;
-    }
-    own
-}
-
 /// Takes a step: as a whole, or in substeps (see the module).
 pub(super) fn advance<M: Model>(
     stage: &mut Stage<'_, M>,
@@ -149,6 +133,10 @@ pub(super) fn advance<M: Model>(
             Err(given_up) => result.report = result.report.after(given_up),
         }
     }
+    // The bounds of the piece before are as young as those of a further solve of the whole.
+    let solver = &settings.solver;
+    let model_solves = solver.model_solves.div_ceil(substeps);
+    let settings = &Settings { solver: SolverSettings { model_solves, ..*solver }, ..*settings };
     let result = stage.in_pieces(substeps, settings, result, |stage, settings, result| {
         prepare(stage, settings);
         if let Ok(piece) = try_step(stage, settings, memory, true) {

@@ -15,6 +15,7 @@ use super::system::{for_each_change, push_all};
 use super::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
 use crate::solver::kinematics::Model;
 use crate::solver::methods::stopping::SolveReport;
+use crate::solver::problem::velocity_error;
 
 /// Least and largest share of the present mean product that a step aims at.
 const AIMS: [f64; 2] = [1e-6, 1.0];
@@ -37,6 +38,9 @@ const PATIENCE: u32 = 15;
 const POLISH_FROM: f64 = 1e-6;
 /// Where they did not, they are tried again below this share of it.
 const POLISH_AGAIN: f64 = 0.1;
+/// Below this share of the velocities' error that sweeps leave the path came nearer to a solution than they. Larger: where
+/// there is none, huge impulses are taken for one.
+const FAR_NEARER: f64 = 1e-2;
 /// Sweeps that stand for a solution where there is none.
 const SWEEPS_INSTEAD: u32 = 100;
 /// Starts, each further up the path.
@@ -216,9 +220,16 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         if self.solve_from_far() {
             return self.report;
         }
-        // Where no velocities satisfy all contacts at once, impulses grow without bound along the path.
+        self.go_back();
+        let of_path = velocity_error(self.problem).bound;
+        // Where no velocities satisfy all contacts at once, impulses grow without bound along the path, and nothing is
+        // gained. Where that came far nearer to a solution, it was asked for more than rounding allows.
         self.problem.write_impulses(self.workspace.first.iter().copied());
-        self.settles_in(SWEEPS_INSTEAD);
+        if !self.settles_in(SWEEPS_INSTEAD)
+            && of_path < FAR_NEARER * velocity_error(self.problem).bound
+        {
+            self.go_back();
+        }
         self.report.stalled = !self.report.converged && !self.is_spent();
         self.report
     }

@@ -62,7 +62,9 @@ use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{Model, Row, StepProblem, for_each_row};
+use crate::solver::{
+    Model, Row, SolverSettings, StepProblem, StopTest, for_each_row, velocity_error,
+};
 use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
@@ -94,7 +96,7 @@ pub(super) fn pass<M: Model>(
     let settings = &settings.solver;
     let Stage { state, problem, part, memory } = stage;
     let State { world, candidates, contacts, .. } = &**state;
-    shocks.begin(problem, contacts, settings.tolerance);
+    shocks.begin(problem, contacts, settings);
     let mut result: Option<StepResult> = None;
     for _ in 0..MOST_PASSES {
         let first_secs = shocks.find_next(&ShockInputs { problem, world, candidates });
@@ -213,8 +215,12 @@ pub(super) struct Shocks {
     /// The impulses of shocks, by their rows, and of the step, by its contacts, along their normals of then.
     of_shocks: Vec<(usize, (DVec2, Impulse))>,
     of_step: Vec<(DVec2, Impulse)>,
-    /// λ_n·m_ij from which on a contact that touches is struck, N·s.
+    /// How far a contact may err in a step that is solved to a residual, N·s.
     least: f64,
+    /// m_ij times the speed (m/s) and the speed that a contact which touches has to close with to be struck: above
+    /// what solves leave.
+    least_momentum: f64,
+    least_closing: f64,
     /// The fastest shock of the step so far, m/s.
     fastest: f64,
 }
@@ -280,7 +286,7 @@ impl Shocks {
         &mut self,
         problem: &StepProblem<M>,
         contacts: &ContactList,
-        tolerance: f64,
+        settings: &SolverSettings,
     ) {
         let Self { pairs, bodies, numbers, .. } = self;
         bodies.clear();
@@ -324,7 +330,11 @@ impl Shocks {
             body.rest_of_way = -0.5 * numbers.time_step_secs * fallen;
         }
         self.of_shocks.clear();
-        self.least = tolerance * scale(problem);
+        self.least = settings.tolerance * scale(problem);
+        (self.least_momentum, self.least_closing) = match settings.stop {
+            StopTest::VelocityError => (0.0, settings.tolerance * velocity_error(problem).scale),
+            _ => (self.least, 0.0),
+        };
         self.fastest = 0.0;
     }
 }

@@ -105,9 +105,10 @@ impl Shocks {
         if self.is_in_touch(at, number) {
             let was_struck = |grain: usize| self.bodies[grain].struck_in_step;
             let again = was_struck(i) || j.is_some_and(was_struck);
-            let again = if again { LEAST_AGAIN * self.fastest } else { 0.0 };
+            let least = if again { LEAST_AGAIN * self.fastest } else { 0.0 };
             let momentum = -pair.speed * at.problem.rows.get(number).effective_mass;
-            let closes = -pair.speed > again && momentum > self.least;
+            let closes =
+                -pair.speed > least.max(self.least_closing) && momentum > self.least_momentum;
             return if closes { NextImpact::Closes(from) } else { NextImpact::Never };
         }
         // The gap is no smaller than its tangents say.

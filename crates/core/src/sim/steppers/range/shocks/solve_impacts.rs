@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::{NEVER, NextImpact, Role, Shocks, Touch, along_axes, along_normal, grains, scale};
 use crate::sim::stepping::StepResult;
 use crate::solver::{
-    Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem, StopTest, measure,
-    solve, sweep,
+    FrictionModel, Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
+    StopTest, measure, solve, sweep,
 };
 
 /// Rows from which on shocks are solved no more tightly than the step.
@@ -18,11 +18,16 @@ const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13,
 /// Largest tolerance of shocks, which are small against the step's own velocities.
 const LOOSEST: f64 = 1e-3;
 
+/// Sweeps under Coulomb's law that bounds of friction are taken from. With 10, and the bounds taken anew once, shocks of a
+/// dry pile lose 2 % less energy than under Coulomb's law; with these 0.5 ± 0.5 %, at half the factorisations.
+const SWEEPS_FOR_BOUNDS: u32 = 50;
+
 /// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
     memory: &mut Memory<M>,
     settings: &SolverSettings,
+    model: FrictionModel,
     least: f64,
 ) -> SolveReport {
     let mut earlier = SolveReport::default();
@@ -36,12 +41,20 @@ fn solve_together<M: Model>(
             return earlier;
         }
     }
+    if model != FrictionModel::Coulomb {
+        // There is no solve before it to take bounds from: nothing acts on both sides of a shock.
+        for _ in 0..SWEEPS_FOR_BOUNDS {
+            sweep::<M, false>(part);
+        }
+        part.begin_friction(model, |_| None);
+        part.go_on_from_present();
+    }
     let of_step = (least / scale(part)).min(LOOSEST);
     let tolerance = match settings.stop {
         StopTest::Residual => settings.tolerance.max(of_step),
         _ => settings.tolerance,
     };
-    solve(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
+    solve(part, memory, &SolverSettings { tolerance, model_solves: 1, ..*settings }).after(earlier)
 }
 
 impl Shocks {
@@ -76,6 +89,7 @@ impl Shocks {
         part.bodies.masses.clone_from(&problem.bodies.masses);
         part.bodies.mean_mass = problem.bodies.mean_mass;
         part.law = problem.law.with_capture_speed(0.0);
+        part.hold_errors_against(problem);
         // A solve of other shocks may have fallen back to bounds, which are of those shocks' rows.
         part.forget_bounds();
         true
@@ -129,7 +143,7 @@ impl Shocks {
             sweep::<M, false>(part);
             SolveReport::nothing_yet()
         } else {
-            solve_together::<M>(part, memory, settings, self.least)
+            solve_together::<M>(part, memory, settings, problem.friction.model, self.least)
         };
         let measures = measure(part);
         let Measures { residual, normal_work, mut tangential_work, border_work, .. } = measures;
