@@ -8,8 +8,9 @@
 use crate::solver::method::Method;
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Up to so many contacts Newton's method is taken under Coulomb's law. Of steps of 2,000 grains in full collapse, 4,000
-/// contacts, it solves 28 %, conjugate gradients 2 %; at 20,000 contacts its factorisations outweigh that.
+/// Up to so many contacts Newton's method is taken under Coulomb's law. Neither it nor conjugate gradients solve one of the
+/// first 20 steps of dense piles to 1e-6 within 1,000 iterations. Of 2,000 grains it leaves half to two thirds of their residual
+/// in five times their time, of 10,000 grains seven to nine tenths in eleven times their time.
 const CONTACTS_FOR_NEWTON: usize = 10_000;
 
 /// The method that solves a problem of so many contacts under a model of friction, with walls that a force drives or
