@@ -85,7 +85,7 @@ fn tables_of_discs() {
 
 #[test]
 fn studies() {
-    let names = ["pile", "cradle", "cradle-map", "pile-map", "range"];
+    let names = ["pile", "cradle", "cradle-map", "pile-map", "default"];
     let texts = names.map(|name| file(&format!("assets/studies/{name}.toml"))).into();
     fuzz_texts("studies", "toml", texts, |text, path| Study::parse(text, path, true));
 }
