@@ -9,7 +9,7 @@
 mod common;
 
 use common::timing::{criterion, least_secs};
-use slump::data::{FormatName, Recording, RunFacts};
+use slump::data::{FormatName, Recording, RunFacts, Times};
 use slump::sim::Simulation;
 use slump::solver::StopTest;
 
@@ -33,15 +33,15 @@ fn run(start: &Simulation, formats: &[FormatName]) -> u64 {
     let folder = tempfile::tempdir().expect("a folder");
     let mut simulation = start.clone();
     let mut recording = (!formats.is_empty()).then(|| {
-        Recording::start(folder.path(), formats, &RunFacts::default(), false).expect("a recording")
+        let started = Recording::start(folder.path(), formats, &RunFacts::default(), false);
+        let every_secs = STEPS_A_FRAME as f64 * simulation.parameters().time_step_secs;
+        started.expect("a recording").at(Times::Every(every_secs), &simulation)
     });
-    for step in 1..=STEPS {
+    for _ in 0..STEPS {
         let observables = *simulation.step().expect("a finite state");
         let Some(recording) = &mut recording else { continue };
         recording.add_step(&observables).expect("a row");
-        if step % STEPS_A_FRAME == 0 {
-            recording.add(simulation.moment()).expect("a frame");
-        }
+        recording.add_if_due(&simulation).expect("a frame");
     }
     recording.map_or(Ok(()), Recording::finish).expect("a recording");
     bytes_in(folder.path())

@@ -1,7 +1,11 @@
 //! What goes between Python and the program: lists and tables as numpy's arrays, nested data by way of JSON, and
 //! errors as exceptions of the same sentence.
 
-use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use numpy::ndarray::Dimension;
+use numpy::{
+    AllowTypeChange, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayLike2,
+    PyArrayMethods,
+};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -40,13 +44,37 @@ pub(crate) fn refused(
     exception(Error::value(field, value, allowed))
 }
 
+/// An array that nobody writes to in vain: it is a copy.
+fn read_only<T: Element, D: Dimension>(
+    array: Bound<'_, PyArray<T, D>>,
+) -> Bound<'_, PyArray<T, D>> {
+    array.readwrite().make_nonwriteable();
+    array
+}
+
 /// Rows of `N` numbers, one below the other.
 pub(crate) fn rows<const N: usize>(
     py: Python<'_>,
     rows: impl ExactSizeIterator<Item = [f64; N]>,
 ) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let shape = [rows.len(), N];
-    rows.flatten().collect::<Vec<_>>().into_pyarray(py).reshape(shape)
+    rows.flatten().collect::<Vec<_>>().into_pyarray(py).reshape(shape).map(read_only)
+}
+
+/// The vectors of an array that a user gives, two numbers a row.
+pub(crate) fn vectors<V: From<[f64; 2]>>(
+    name: &str,
+    given: &PyArrayLike2<'_, f64, AllowTypeChange>,
+) -> PyResult<Vec<V>> {
+    let given = given.as_array();
+    if given.ncols() != 2 {
+        return Err(refused(
+            format!("{name}.shape"),
+            format!("{:?}", given.shape()),
+            "(grains, 2)",
+        ));
+    }
+    Ok(given.rows().into_iter().map(|row| [row[0], row[1]].into()).collect())
 }
 
 /// A list of numbers or switches.
@@ -54,7 +82,7 @@ pub(crate) fn list<T: Element>(
     py: Python<'_>,
     list: impl Iterator<Item = T>,
 ) -> Bound<'_, PyArray1<T>> {
-    list.collect::<Vec<_>>().into_pyarray(py)
+    read_only(list.collect::<Vec<_>>().into_pyarray(py))
 }
 
 /// A table as a dictionary of columns.
@@ -79,7 +107,7 @@ pub(crate) fn first_row<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'p
 /// that it does not have is off.
 fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
     Ok(match values {
-        Values::Numbers(numbers) => numbers.into_pyarray(py).into_any(),
+        Values::Numbers(numbers) => list(py, numbers.into_iter()).into_any(),
         Values::SomeNumbers(numbers) => {
             list(py, numbers.into_iter().map(|number| number.unwrap_or(f64::NAN))).into_any()
         }
@@ -89,7 +117,9 @@ fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
         }
         Values::Words { words, codes } => {
             let words = py.import("numpy")?.call_method1("array", (words, "U"))?;
-            words.get_item(list(py, codes.into_iter().map(i64::from)))?
+            let words = words.get_item(list(py, codes.into_iter().map(i64::from)))?;
+            words.call_method1("setflags", (false,))?;
+            words
         }
     })
 }

@@ -24,7 +24,7 @@ mod _slump {
     #[pymodule_export]
     use super::problems::solve;
     #[pymodule_export]
-    use super::simulation::Simulation;
+    use super::simulation::{_restored, Simulation};
     #[pymodule_export]
     use super::start::scene_as_data;
 

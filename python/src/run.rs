@@ -45,13 +45,13 @@ impl Run {
         Self { scene, simulation, rows: Vec::new(), tally, recording: None, alarms_told }
     }
 
-    /// Saves it as it is now.
-    pub(crate) fn save(&self, path: &Path) -> Result<()> {
+    /// All of it as it is now, but for the rows of its steps.
+    pub(crate) fn saved(&self) -> Result<SavedState> {
         let gone = |kind| self.simulation.alarms().iter().any(|alarm| alarm.kind == kind);
         if gone(AlarmKind::NotFinite) {
             return Err(Error::value("state", "no longer finite", "finite where it is saved"));
         }
-        SavedState::new(self.scene.clone(), self.simulation.clone(), self.tally).save(path)
+        Ok(SavedState::new(self.scene.clone(), self.simulation.clone(), self.tally))
     }
 
     /// A second one, which goes on as this one would, but is not recorded.

@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use numpy::{AllowTypeChange, PyArrayLike2};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
-use crate::conversion::{exception, parsed, refused};
+use crate::conversion::{exception, parsed, refused, vectors};
 use crate::run::Run;
 use crate::{options, start, stepping};
 use slump_core::sim::AlarmKind;
+use slump_data::config::SavedState;
 use slump_data::data::{DataSettings, FormatName};
 use slump_data::interchange::problem_file_of;
 
@@ -34,8 +36,8 @@ use slump_data::interchange::problem_file_of;
 ///     `slump.options()` lists them.
 ///
 /// Every setting (`bond`, `dt`, …) is an attribute, to be read and, from the next step on, changed. The same
-/// options give bit for bit the trajectory of the command line. Arrays are copies: they stay as they are while
-/// the simulation goes on. Several threads may use one simulation, and many simulations run in parallel on
+/// options give bit for bit the trajectory of the command line. Arrays are copies that cannot be written to:
+/// they stay as they are while the simulation goes on. Several threads may use one simulation, and many simulations run in parallel on
 /// threads: steps are taken without Python's lock.
 ///
 /// Raises
@@ -68,6 +70,13 @@ impl Simulation {
     pub(crate) fn new_alarms(&self, py: Python<'_>) -> Vec<(AlarmKind, String)> {
         self.run(py).new_alarms()
     }
+}
+
+/// The simulation that a pickle holds.
+#[pyfunction]
+pub(crate) fn _restored(py: Python<'_>, saved: Vec<u8>) -> PyResult<Simulation> {
+    let state = py.detach(|| SavedState::from_bytes(&saved, "pickle"));
+    state.map(|state| Simulation::of(Run::of(state))).map_err(exception)
 }
 
 fn format_of(name: &str) -> PyResult<FormatName> {
@@ -174,7 +183,7 @@ impl Simulation {
     /// it bit for bit, as `--restart` of the command line does, and `Simulation(initial=path)` begins with its
     /// grains. Files are read by the version that wrote them, and by no other.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.locked().save(&path)).map_err(exception)
+        py.detach(|| self.locked().saved()?.save(&path)).map_err(exception)
     }
 
     /// Records from now on into a folder, as `--data` of the command line does: what each step measures, and all
@@ -218,6 +227,53 @@ impl Simulation {
     /// Forgets the rows of the steps so far.
     fn forget_history(&self, py: Python<'_>) {
         self.run(py).rows = Vec::new();
+    }
+
+    /// What `save` writes goes into a pickle, so that a run goes on bit for bit in another process.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let bytes = py.detach(|| self.locked().saved()?.to_bytes()).map_err(exception)?;
+        let restored = py.import("slump._slump")?.getattr("_restored")?;
+        Ok((restored, (PyBytes::new(py, &bytes),)))
+    }
+
+    /// Sets the centres of all grains, m: a row a grain. Velocities stay, and so does what the last step measured.
+    fn set_positions(
+        &self,
+        py: Python<'_>,
+        positions: PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<()> {
+        let positions: Vec<_> = vectors("positions", &positions)?;
+        self.run(py).simulation.set_positions(&positions).map_err(exception)
+    }
+
+    /// Sets the velocities of all grains, m/s: a row a grain. What the last step measured stays.
+    fn set_velocities(
+        &self,
+        py: Python<'_>,
+        velocities: PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<()> {
+        let velocities: Vec<_> = vectors("velocities", &velocities)?;
+        self.run(py).simulation.set_velocities(&velocities).map_err(exception)
+    }
+
+    fn _repr_html_(&self, py: Python<'_>) -> String {
+        let run = self.run(py);
+        let now = run.simulation.observables();
+        let rows = [
+            ("grains", run.simulation.world().grains.len().to_string()),
+            ("contacts", now.contacts.to_string()),
+            ("steps", now.step.to_string()),
+            ("time", format!("{:.6} s", now.time_secs)),
+            ("stepper", run.simulation.settings().stepper.to_string()),
+            ("slump", format!("{:.6}", now.slump)),
+            ("kinetic energy", format!("{:.4e} J", now.kinetic_energy)),
+        ];
+        let rows = rows.map(|(name, value)| format!("<tr><td>{name}</td><td>{value}</td></tr>"));
+        let name = run.scene.name.replace('&', "&amp;").replace('<', "&lt;");
+        format!("<table><caption>{name}</caption>{}</table>", rows.concat())
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {

@@ -1,4 +1,4 @@
-//! What a simulation shows of itself. Arrays are copies.
+//! What a simulation shows of itself. Arrays are copies, and read-only.
 
 use std::path::PathBuf;
 

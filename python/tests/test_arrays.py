@@ -127,8 +127,34 @@ def test_arrays_are_copies(sim: slump.Simulation) -> None:
     was = kept.copy()
     other.step(10)
     np.testing.assert_array_equal(kept, was)
-    kept[:] = 0.0
-    assert (other.positions != 0.0).any()
+    grains = other.grains
+    for array in (kept, other.radii, other.forces, *grains.values(), *other.contacts.values()):
+        with pytest.raises(ValueError, match="read-only"):
+            array[:1] = array[:1]
+
+
+def test_grains_are_put_elsewhere_and_pushed(sim: slump.Simulation) -> None:
+    other = sim.copy()
+    up = other.positions + [0.0, 50.0]
+    other.set_positions(up)
+    other.set_velocities(np.zeros_like(up, dtype=np.float32))
+    np.testing.assert_array_equal(other.positions, up)
+    assert not other.velocities.any()
+    bond, secs = other.bond, other.dt
+    other.bond = 0.0
+    other.step(1)
+    assert other.observables["lost_grains"] == sim.observables["lost_grains"]
+    low = other.positions[:, 1].argmin()
+    assert other.velocities[low, 1] == pytest.approx(-secs * other.gravity) or other.observables["contacts"] > 0
+    assert (other.positions[:, 1] > 45.0).all() and bond > 0
+    for name, given, sentence in [
+        ("positions", up[:-1], "positions is 137, but must be 138, one a grain"),
+        ("positions", up[:, :1], r"positions.shape is \[138, 1\], but must be \(grains, 2\)"),
+        ("positions", np.zeros_like(up), r"grains\[\d+\].position is "),
+        ("velocities", np.full_like(up, np.nan), r"velocities\[0\] is \[NaN, NaN\], but must be finite"),
+    ]:
+        with pytest.raises(slump.InputError, match=sentence):
+            getattr(other, f"set_{name}")(given)
 
 
 def test_a_table_of_grains_is_a_start(sim: slump.Simulation) -> None:

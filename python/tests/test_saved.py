@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
 from pathlib import Path
 
@@ -61,6 +62,24 @@ def test_a_saved_run_is_that_of_the_command_line_in_both_directions(tmp_path: Pa
     other.run()
     other.save(here)
     assert here.read_bytes() == whole.read_bytes()
+
+
+@pytest.mark.parametrize("options", RUNS, ids=str)
+def test_a_pickle_goes_on_bit_for_bit(options: dict[str, object]) -> None:
+    sim = slump.Simulation(**options)  # type: ignore[arg-type]
+    sim.step(40)
+    other = pickle.loads(pickle.dumps(sim))
+    assert told(other) == told(sim) and other.settings == sim.settings and other.name == sim.name
+    for run in (sim, other):
+        run.step(40)
+    assert other.steps == 80 and told(other) == told(sim)
+
+
+def test_a_notebook_shows_a_few_numbers() -> None:
+    scene = slump.scene("cradle")
+    scene["name"] = "a<b"
+    shown = slump.Simulation(scene)._repr_html_()
+    assert "<caption>a&lt;b</caption>" in shown and "<td>steps</td><td>0</td>" in shown
 
 
 def test_options_change_a_run_that_goes_on(tmp_path: Path) -> None:

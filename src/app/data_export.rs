@@ -102,11 +102,7 @@ impl DataOrder {
             if simulation.observables().step > start.step {
                 recording.add_step(simulation.observables())?;
             }
-            match self.settings.every_secs {
-                Some(_) => recording.add_if_due(simulation),
-                None => recording.add(simulation.moment()),
-            }
-            .map(ControlFlow::Continue)
+            recording.add_if_due(simulation).map(ControlFlow::Continue)
         })?;
         let Some(recording) = recording else { return nothing() };
         let told = recording_sentence(recording.folder(), recording.frames());

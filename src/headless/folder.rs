@@ -18,7 +18,7 @@ use crate::output::{
     remove_if_there,
 };
 use crate::scene::Scene;
-use crate::sim::{Simulation, Tally};
+use crate::sim::{ForceSums, Simulation, Tally};
 
 /// What becomes of the files of an earlier run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -196,6 +196,8 @@ pub(super) struct Marks {
     pub restarted_from: Option<Instant>,
     /// Moments at which the same command went on; none in one that has just begun.
     pub went_on_at: Vec<Instant>,
+    /// What pairs have transmitted since the last frame of the recording.
+    pub sums: ForceSums,
 }
 
 /// A run that is about to go on, from its start or from later.

@@ -72,7 +72,10 @@ pub(super) fn draw(
         // Before anything else is there that another run would be refused for.
         checkpoints.write(&scene, &simulation, &tally, marks.clone())?;
     }
-    let start = |plan: RecordingPlan| plan.start(&scene, &simulation, &picture_times_secs);
+    let start = |plan: RecordingPlan| -> Result<Recording> {
+        let recording = plan.start(&scene, &simulation, &picture_times_secs)?;
+        Ok(recording.with_sums(marks.sums.clone()))
+    };
     let recording = recording.map(start).transpose()?;
     let provenance = options.provenance(config, &scene)?;
     let mut writer =

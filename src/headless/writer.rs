@@ -130,6 +130,7 @@ impl<'a> RunWriter<'a> {
             table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
             waiting: self.waiting.as_ref().map_or(Ok(0), WaitingStates::mark)?,
             pictures: self.manifest.pictures.clone(),
+            sums: self.recording.as_ref().map(|it| it.sums().clone()).unwrap_or_default(),
             ..self.marks.clone()
         })
     }

@@ -14,7 +14,7 @@ PANDAS = {"number": "float64", "count": "int64"}
 
 
 def main(recording):
-    for name in ["grains", "contacts", "walls", "steps", "measures", "histograms"]:
+    for name in ["grains", "contacts", "pairs", "walls", "steps", "measures", "histograms"]:
         text, of_columns = table(recording, name), kinds(recording, name)
         by_polars = polars.read_parquet(f"{recording}/{name}/*.parquet")
         by_pandas = pandas.read_parquet(f"{recording}/{name}")

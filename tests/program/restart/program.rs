@@ -224,6 +224,35 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
     }
 }
 
+#[test]
+fn means_of_a_recording_go_on_where_a_run_was_killed_between_two_frames() {
+    let (whole, stopped) = (folder(), folder());
+    let recorded = |out: &Path| {
+        let mut command = drawn(PILE, out);
+        command.args(["--data-every", "0.2", "--data-format", "csv", "--data"]);
+        command.arg(out.join("data")).stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    };
+    succeed(&mut recorded(whole.path()));
+    let mut child = recorded(stopped.path()).spawn().expect("it starts");
+    wait_for("pictures", || stopped.path().join("frame_00003.png").exists());
+    child.kill().expect("a child");
+    child.wait().expect("an end");
+    succeed(&mut recorded(stopped.path()));
+    let went_on = &manifest(stopped.path())["runs"][0]["went_on_at"][0]["step"];
+    assert!((1..200).contains(&went_on.as_u64().expect("a step")), "{went_on}");
+    for table in ["pairs", "grains", "measures"] {
+        let [whole, stopped] = [&whole, &stopped].map(|folder| {
+            let text = read(folder.path().join(format!("data/csv/{table}.csv")));
+            text.lines()
+                .filter(|line| !line.starts_with('#'))
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        });
+        assert!(whole.len() > 2 && whole == stopped, "{table}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {

@@ -136,7 +136,7 @@ fn parts_end_with_a_frame_and_do_not_hang_on_how_fast_the_disk_was() {
     let [one, other] = &folders;
     let names = parts(one.path(), "grains");
     assert!(names.len() > 2, "several parts: {}", names.len());
-    for table in ["grains", "contacts", "walls", "steps", "measures", "histograms"] {
+    for table in ["grains", "contacts", "pairs", "walls", "steps", "measures", "histograms"] {
         let (one, other) = (parts(one.path(), table), parts(other.path(), table));
         assert_eq!(one.len(), other.len());
         for (one, other) in one.iter().zip(&other) {

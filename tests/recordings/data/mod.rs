@@ -33,9 +33,11 @@ fn start(folder: &Path, formats: &[FormatName], scene: &Scene) -> Recording {
 
 /// Takes steps, and records each of them and a frame after each `every`.
 fn record(recording: &mut Recording, simulation: &mut Simulation, steps: u64, every: u64) {
+    recording.follow(simulation);
     for _ in 0..steps {
         let observables = *simulation.step().expect("a finite state");
         recording.add_step(&observables).expect("a row");
+        recording.follow(simulation);
         if observables.step.is_multiple_of(every) {
             recording.add(simulation.moment()).expect("a frame");
         }

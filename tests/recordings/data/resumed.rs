@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use slump::data::{RunFacts, Times};
+use slump::sim::ForceSums;
 
 use super::*;
 
@@ -46,14 +47,14 @@ fn what_goes_on_is_what_was_never_stopped() {
         let mut simulation = pile.simulation().expect("a scene");
         let mut recording = start(&path, &formats, &pile);
         record(&mut recording, &mut simulation, stopped_at, 2);
-        let saved = simulation.clone();
+        let (saved, sums) = (simulation.clone(), recording.sums().clone());
         // The run goes on for a while, and is stopped after its checkpoint.
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
         drop(recording);
         let mut simulation = saved;
         let about = slump::config::scene_facts(&pile).expect("facts");
-        let mut recording =
-            Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
+        let recording = Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
+        let mut recording = recording.with_sums(sums);
         assert_eq!(recording.frames(), stopped_at / 2);
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
         recording.finish().expect("a recording");
@@ -77,9 +78,14 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     cut("csv/grains.csv", 7);
     cut("frames.csv", 2);
     let mut simulation = pile.simulation().expect("a scene");
-    simulation.take_steps(25).expect("a finite state");
+    simulation.take_steps(24).expect("a finite state");
+    let mut sums = ForceSums::default();
+    sums.follow(&simulation);
+    simulation.step().expect("a finite state");
+    sums.follow(&simulation);
     let about = slump::config::scene_facts(&pile).expect("facts");
-    let mut recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
+    let recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
+    let mut recording = recording.with_sums(sums);
     record(&mut recording, &mut simulation, 15, 2);
     recording.finish().expect("a recording");
     assert_same_files(&torn, &expected, "mended");
@@ -156,7 +162,7 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
     let again = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
     again.expect("an empty folder").finish().expect("a recording");
     let mut left = files(folder.path());
-    for table in ["contacts", "grains", "histograms", "measures", "steps", "walls"] {
+    for table in ["contacts", "grains", "histograms", "measures", "pairs", "steps", "walls"] {
         let text = left.remove(&format!("csv/{table}.csv")).expect("a table");
         let rows = text.split(|&byte| byte == b'\n').filter(|line| !line.starts_with(b"#"));
         assert_eq!(rows.count(), 2, "the names of its columns alone");

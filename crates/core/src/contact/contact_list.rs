@@ -132,6 +132,17 @@ impl ContactList {
         !self.sums.pairs.is_empty()
     }
 
+    /// What pairs transmitted in the last step: all that did, sorted, once in a step that is summed up.
+    pub(crate) fn transmitted_in_step(&self) -> impl Iterator<Item = Transmitted> + '_ {
+        let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
+        let is_whole = !self.has_sums();
+        let of_contacts = contacts.iter().zip(impulses).zip(found_in).filter(move |_| is_whole);
+        let of_contacts = of_contacts.map(|((contact, &impulse), &found_in)| {
+            Transmitted::of(*contact, found_in, contact.normal, impulse)
+        });
+        self.sums.pairs.iter().copied().chain(of_contacts)
+    }
+
     /// What the last step's pairs transmitted, sorted, each with its place among the contacts if it still is one.
     pub(crate) fn transmitted(&self) -> Vec<(Transmitted, Option<usize>)> {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use crate::contact::check_distances;
 use crate::error::{self, Error, Result};
 use crate::sim::pull::gravity_that_scales;
 use crate::sim::simulation::Simulation;
@@ -71,6 +72,53 @@ impl Simulation {
         self.edits += 1;
         let time_step_secs = self.settings.parameters.time_step_secs;
         self.surroundings = Arc::new(Surroundings::of(&self.state.world, time_step_secs));
+        Ok(())
+    }
+
+    /// Sets all grains' centres, m, and leaves velocities and impulses as they are. No way led there: grains that were
+    /// not lost are not lost by it.
+    ///
+    /// # Errors
+    /// Names what is refused, where these are not places of as many grains; then nothing is changed.
+    pub fn set_positions(&mut self, positions: &[DVec2]) -> Result<()> {
+        let mut world = self.state.world.clone();
+        self.replace("positions", &mut world.grains.positions, positions)?;
+        world.grains.brought_back.fill(DVec2::ZERO);
+        if let Some(periodic) = world.periodic {
+            let places = world.grains.positions.iter_mut().zip(&mut world.grains.brought_back);
+            places.for_each(|(place, brought_back)| {
+                *brought_back = *place - periodic.wrap(*place);
+                *place -= *brought_back;
+            });
+        }
+        check_distances(&world)?;
+        self.watch.losses.place(&world.grains.positions);
+        self.state.world = world;
+        self.state.look_anew()
+    }
+
+    /// Sets all grains' velocities, m/s.
+    ///
+    /// # Errors
+    /// As [`Simulation::set_positions`].
+    pub fn set_velocities(&mut self, velocities: &[DVec2]) -> Result<()> {
+        let mut now = self.state.world.grains.velocities.clone();
+        self.replace("velocities", &mut now, velocities)?;
+        self.state.world.grains.velocities = now;
+        Ok(())
+    }
+
+    /// Puts vectors of all grains in the place of those there are.
+    fn replace(&self, name: &str, there: &mut [DVec2], vectors: &[DVec2]) -> Result<()> {
+        let (count, on_line) = (there.len(), self.state.physics.axes == 1);
+        error::check(vectors.len() == count, name, vectors.len(), format!("{count}, one a grain"))?;
+        let is_sound =
+            |(then, now): (&DVec2, &DVec2)| now.is_finite() && !(on_line && then.y != now.y);
+        if let Some(grain) = there.iter().zip(vectors).position(|pair| !is_sound(pair)) {
+            let allowed = if on_line { "finite, with y as it was" } else { "finite" };
+            return Err(Error::value(format!("{name}[{grain}]"), vectors[grain], allowed));
+        }
+        there.copy_from_slice(vectors);
         Ok(())
     }
 

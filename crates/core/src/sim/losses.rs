@@ -132,6 +132,11 @@ impl Losses {
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
+    /// Has the ways of all grains begin at these places, m.
+    pub(super) fn place(&mut self, positions: &[DVec2]) {
+        self.from = positions.to_vec();
+    }
+
     pub(super) fn remove(&mut self, grain: usize) {
         self.from.remove(grain);
         self.initial_heights.remove(grain);

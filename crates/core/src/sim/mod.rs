@@ -2,6 +2,7 @@
 
 mod alarm;
 mod edits;
+mod force_sums;
 mod losses;
 mod moment;
 mod numbers;
@@ -19,6 +20,7 @@ mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
 pub use edits::{Edit, NEW_GRAIN_DIAMETERS, place_of};
+pub use force_sums::{ForceSums, PairSum};
 pub use moment::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 pub use numbers::{SweepElasticity, diffusion_of_sweep};
 pub use observables::{Beside, Observables, QUANTITIES, Quantity};

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{Bond, TOUCH_IN_DIAMETERS};
@@ -94,7 +95,8 @@ pub struct ContactState {
 }
 
 /// The other body of a contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub enum OtherBody {
     /// A grain, by its number.
     Grain(u32),

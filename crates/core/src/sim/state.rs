@@ -157,7 +157,7 @@ impl State {
     }
 
     /// Looks for candidates as if there had been none.
-    fn look_anew(&mut self) -> Result<()> {
+    pub(crate) fn look_anew(&mut self) -> Result<()> {
         let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
         let gap_tolerance = self.candidates.gap_tolerance();
         self.candidates = Candidates::new(&self.world, Reach { skin, gap_tolerance })?;

@@ -1,5 +1,6 @@
 //! The tables of a recording: which columns they have, and what these hold.
 
+use super::means;
 use super::table::{Table, place_of};
 use super::walls::fixed_discs;
 use crate::column_spec::CellValue::{Count, Flag, Name, Number, SomeNumber, Word};
@@ -10,10 +11,12 @@ use crate::sim::{
 };
 
 /// The tables that formats write for each frame, without a row.
-pub(super) fn empty_tables_of_frames() -> [Table; 5] {
+pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     let histograms = histogram_table(&Observables::default(), &[]);
     let contacts = Table::new(CONTACTS, CONTACT_COLUMNS, &[], &[]);
-    [empty_grains(), contacts, Table::no_walls(), measures(None), histograms]
+    let walls = Table::no_walls().beside(means::of_walls(&[]));
+    let measures = measures(None).beside(means::of_pile(&[]));
+    [empty_grains(), contacts, means::no_pairs(), walls, measures, histograms]
 }
 
 /// All tables that formats write, without a row.
@@ -102,7 +105,7 @@ const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
 ];
 
 pub(super) fn empty_grains() -> Table {
-    with_measures(Table::new("grains", GRAIN_COLUMNS, &[], &[]), &[])
+    grains_of(&[], &[]).beside(means::of_grains(&[]))
 }
 
 pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
@@ -113,23 +116,49 @@ pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     let rows: Vec<GrainTableRow> = rows
         .map(|((kind, state), id)| GrainTableRow { step, time_secs, id, kind, state })
         .collect();
-    with_measures(Table::new("grains", GRAIN_COLUMNS, &rows, &[]), measures)
+    grains_of(&rows, measures)
 }
 
-/// Adds what is measured of grains. Of fixed discs, which follow, there is nothing.
-fn with_measures(mut table: Table, measures: &[GrainMeasures]) -> Table {
-    let rows = table.len();
-    let measured = Table::new("grains", GrainMeasures::COLUMNS, measures, &[]);
-    table.columns.extend(measured.columns.into_iter().map(|mut column| {
-        column.values = column.values.padded(rows);
-        column
-    }));
-    table
+/// Rows with what is measured of grains. Of fixed discs, which follow, there is nothing.
+fn grains_of(rows: &[GrainTableRow], measures: &[GrainMeasures]) -> Table {
+    let measures = Table::new("grains", GrainMeasures::COLUMNS, measures, &[]);
+    Table::new("grains", GRAIN_COLUMNS, rows, &[]).beside(measures)
 }
 
 const CONTACTS: &str = "contacts";
 
-const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
+/// Words of the column `kind_j`.
+pub(super) const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
+
+/// How tables call bodies j.
+pub(super) struct OtherBodies {
+    grains: u64,
+    discs: u64,
+    /// Shapes and numbers of boundaries, behind a name that is none.
+    pub names: Vec<String>,
+}
+
+impl OtherBodies {
+    pub(super) fn of(moment: &Moment) -> Self {
+        let boundaries = moment.surroundings.boundaries.iter().enumerate();
+        let names = boundaries.map(|(number, boundary)| format!("{} {number}", boundary.word()));
+        let grains = moment.grains.len() as u64;
+        Self {
+            grains,
+            discs: grains + moment.surroundings.fixed_discs.len() as u64,
+            names: std::iter::once(String::new()).chain(names).collect(),
+        }
+    }
+
+    /// Place of its kind's word, number, and place of its name.
+    pub(super) fn told(&self, other: OtherBody) -> (u32, u64, u32) {
+        match other {
+            OtherBody::Grain(number) => (0, number.into(), 0),
+            OtherBody::FixedDisc(number) => (1, self.grains + u64::from(number), 0),
+            OtherBody::Boundary(number) => (2, self.discs + u64::from(number), 1 + number),
+        }
+    }
+}
 
 const STATUSES: &[&str] =
     &[ContactStatus::Open.name(), ContactStatus::Stick.name(), ContactStatus::Slip.name()];
@@ -219,21 +248,13 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
 pub(super) fn contacts(moment: &Moment) -> Table {
     let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
     let has_bonds = moment.settings.stepper == Stepper::Range;
-    let boundaries = moment.surroundings.boundaries.iter().enumerate();
-    let names = boundaries.map(|(number, boundary)| format!("{} {number}", boundary.word()));
-    let names: Vec<String> = std::iter::once(String::new()).chain(names).collect();
-    let grains = moment.grains.len() as u64;
-    let discs = grains + moment.surroundings.fixed_discs.len() as u64;
+    let others = OtherBodies::of(moment);
     let row = |state: &ContactState| {
-        let (kind, other_id, name) = match state.other {
-            OtherBody::Grain(number) => (0, number.into(), 0),
-            OtherBody::FixedDisc(number) => (1, grains + u64::from(number), 0),
-            OtherBody::Boundary(number) => (2, discs + u64::from(number), 1 + number),
-        };
+        let (kind, other_id, name) = others.told(state.other);
         ContactTableRow { step, time_secs, other_id, kind, name, has_bonds, state: *state }
     };
     let rows: Vec<ContactTableRow> = moment.contacts.iter().map(row).collect();
-    Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &names)
+    Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
 }
 
 /// What is measured of a whole pile at a step: a row, or none.
@@ -354,7 +375,8 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "potential_energy",
         "J",
-        "potential energy in the gravity field",
+        "of grains in the gravity field, where they are; a step of moreau, which moves them by the velocities after it, \
+         changes it by -gravity_work and half the time step times -g times the change of momentum",
         Number(|row| row.potential_energy),
     ),
     column(
@@ -396,7 +418,8 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "gravity_work",
         "J",
-        "work of the gravity field in the step",
+        "impulse of the gravity field in the step times the mean of the velocities before and after: with the other \
+         works it is the change of kinetic energy",
         Number(|row| row.gravity_work),
     ),
     column(

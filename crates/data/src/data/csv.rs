@@ -15,7 +15,7 @@ use crate::sim::Observables;
 pub(super) const FOLDER: &str = "csv";
 
 pub(super) struct Csv {
-    of_frames: [TextTable; 5],
+    of_frames: [TextTable; 6],
     steps: TextTable,
 }
 

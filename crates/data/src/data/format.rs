@@ -5,6 +5,7 @@ use std::path::Path;
 use super::columns;
 use super::csv::Csv;
 use super::lammps::Lammps;
+use super::means::Means;
 #[cfg(feature = "data")]
 use super::parquet::Parquet;
 use super::table::Table;
@@ -12,7 +13,7 @@ use super::vtk::Vtk;
 use crate::error::{Error, Result};
 use crate::granular::{MomentMeasures, measure};
 use crate::scene::{DataSettings, FormatName};
-use crate::sim::{Moment, Observables};
+use crate::sim::{ForceSums, Moment, Observables};
 
 /// What is to be known of a recording beside its tables: for the metadata of its files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -33,6 +34,8 @@ pub struct Frame {
     pub grains: Table,
     /// A row a contact.
     pub contacts: Table,
+    /// A row a pair that transmitted anything since the frame before.
+    pub pairs: Table,
     /// A row a wall.
     pub walls: Table,
     /// One row, of the whole pile.
@@ -42,23 +45,26 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Makes the tables of a moment.
-    pub fn new(number: u64, moment: Moment) -> Self {
+    /// Makes the tables of a moment, and of what pairs have transmitted since the frame before.
+    pub fn new(number: u64, moment: Moment, sums: &ForceSums) -> Self {
         let MomentMeasures { pile, grains, histograms } = measure(&moment);
         let now = &moment.observables;
+        let means = Means::of(sums, &moment, &grains, pile.area);
         Self {
             number,
-            grains: columns::grains(&moment, &grains),
+            grains: columns::grains(&moment, &grains).beside(means.grains),
             contacts: Table::of_contacts(&moment),
-            walls: Table::of_walls(&moment),
-            measures: columns::measures(Some((now, &pile))),
+            pairs: means.pairs,
+            walls: Table::of_walls(&moment).beside(means.walls),
+            measures: columns::measures(Some((now, &pile))).beside(means.pile),
             histograms: columns::histogram_table(now, &histograms),
             moment,
         }
     }
 
-    pub(super) fn tables(&self) -> [&Table; 5] {
-        [&self.grains, &self.contacts, &self.walls, &self.measures, &self.histograms]
+    pub(super) fn tables(&self) -> [&Table; 6] {
+        let Self { grains, contacts, pairs, walls, measures, histograms, .. } = self;
+        [grains, contacts, pairs, walls, measures, histograms]
     }
 }
 

@@ -9,6 +9,7 @@ mod columns;
 mod csv;
 mod format;
 mod lammps;
+mod means;
 #[cfg(feature = "data")]
 mod parquet;
 mod reading;

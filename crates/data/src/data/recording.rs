@@ -10,7 +10,7 @@ use super::format::{Format, Frame, RunFacts, check_format, start_format};
 use super::recording_folder::{FRAMES, RecordingFolder, check_manifest, write_manifest};
 use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
-use crate::sim::{Moment, Observables, Simulation};
+use crate::sim::{ForceSums, Moment, Observables, Simulation};
 
 /// Simulated time between two frames where nothing is said, s: that of pictures.
 const DEFAULT_EVERY_SECS: f64 = 0.04;
@@ -37,7 +37,7 @@ const FRAMES_AT_ONCE: usize = 8;
 /// let mut recording = Recording::start(folder.path(), &formats, &RunFacts::default(), false)?;
 /// for _ in 0..10 {
 ///     recording.add_step(simulation.step()?)?;
-///     recording.add(simulation.moment())?;
+///     recording.add_if_due(&simulation)?;
 /// }
 /// recording.finish()?;
 /// assert!(folder.path().join("csv/contacts.csv").exists());
@@ -53,6 +53,8 @@ pub struct Recording {
     schedule: Option<FrameSchedule>,
     /// None once the recording has ended, be it by an error.
     writer: Option<WriterThread>,
+    /// What pairs have transmitted since the last frame.
+    sums: ForceSums,
 }
 
 /// The thread that writes.
@@ -128,7 +130,20 @@ impl Recording {
                 )
             })?;
         let writer = Some(WriterThread { sender, thread });
-        Ok(Self { folder, rows: Vec::new(), frames, last_step, schedule: None, writer })
+        let (rows, sums) = (Vec::new(), ForceSums::default());
+        Ok(Self { folder, rows, frames, last_step, schedule: None, writer, sums })
+    }
+
+    /// What pairs have transmitted since the last frame: a run that goes on from a saved state hands it back to
+    /// [`Recording::with_sums`].
+    pub fn sums(&self) -> &ForceSums {
+        &self.sums
+    }
+
+    /// Has means of the next frame begin with what there was.
+    pub fn with_sums(mut self, sums: ForceSums) -> Self {
+        self.sums = sums;
+        self
     }
 
     /// Where it is.
@@ -151,13 +166,20 @@ impl Recording {
         if self.rows.len() < MOST_ROWS && !has_failed { Ok(()) } else { self.send_rows() }
     }
 
+    /// Adds what pairs transmitted in the last step to the means of the next frame. To be called at the start and after
+    /// each step, once or more often.
+    pub fn follow(&mut self, simulation: &Simulation) {
+        self.sums.follow(simulation);
+    }
+
     /// Adds a frame, the first after the last of those before.
     ///
     /// # Errors
     /// Where something before could not be written.
     pub fn add(&mut self, moment: Moment) -> Result<()> {
         self.send_rows()?;
-        self.send(RecordingMessage::Frame(self.frames, Box::new(moment)))?;
+        let taken = Box::new((moment, self.sums.take()));
+        self.send(RecordingMessage::Frame(self.frames, taken))?;
         self.frames += 1;
         Ok(())
     }
@@ -173,12 +195,14 @@ impl Recording {
         self
     }
 
-    /// Adds a frame of the present state where one is due. To be called at the start and after each step.
+    /// Adds a frame of the present state where one is due, which it always is unless [`Recording::at`] was told times.
+    /// To be called at the start and after each step, which it follows.
     ///
     /// # Errors
     /// Where something before could not be written.
     pub fn add_if_due(&mut self, simulation: &Simulation) -> Result<()> {
-        let is_due = self.schedule.as_mut().is_some_and(|schedule| schedule.is_due(simulation));
+        self.follow(simulation);
+        let is_due = self.schedule.as_mut().is_none_or(|schedule| schedule.is_due(simulation));
         if is_due { self.add(simulation.moment()) } else { Ok(()) }
     }
 
@@ -240,7 +264,7 @@ impl Drop for Recording {
 enum RecordingMessage {
     Steps(Vec<Observables>),
     /// A frame, by the number of those before.
-    Frame(u64, Box<Moment>),
+    Frame(u64, Box<(Moment, ForceSums)>),
     /// Everything is to be written before this is answered.
     Flush(SyncSender<()>),
 }
@@ -302,8 +326,9 @@ impl FormatsWriter {
             RecordingMessage::Steps(rows) => {
                 self.formats.iter_mut().try_for_each(|format| format.add_steps(&rows))
             }
-            RecordingMessage::Frame(number, moment) => {
-                let frame = Frame::new(number, *moment);
+            RecordingMessage::Frame(number, taken) => {
+                let (moment, sums) = *taken;
+                let frame = Frame::new(number, moment, &sums);
                 let Observables { step, time_secs, .. } = frame.moment.observables;
                 self.formats.iter_mut().try_for_each(|format| format.add(&frame))?;
                 self.waiting.push(FrameRow { step, time_secs, number });

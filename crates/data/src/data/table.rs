@@ -185,6 +185,16 @@ impl Table {
         Self { name, columns: columns.collect() }
     }
 
+    /// The same with further columns; where these have fewer rows, the others have nothing.
+    pub(super) fn beside(mut self, more: Self) -> Self {
+        let rows = self.len();
+        self.columns.extend(more.columns.into_iter().map(|mut column| {
+            column.values = column.values.padded(rows);
+            column
+        }));
+        self
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::table::Table;
 use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber};
 use crate::column_spec::{ColumnSpec, column};
-use crate::sim::{ContactState, GrainState, Moment, MotionView, OtherBody, Surroundings};
+use crate::sim::{GrainState, Moment, MotionView, OtherBody, Surroundings};
 use crate::world::{Boundary, Edge};
 
 struct WallTableRow {
@@ -92,7 +92,9 @@ const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = &[
 impl Table {
     /// A row a wall.
     pub fn of_walls(moment: &Moment) -> Self {
-        let (walls, names): (Vec<_>, Vec<_>) = walls(moment).into_iter().unzip();
+        let walls = walls(&moment.surroundings).into_iter().enumerate();
+        let rows = walls.map(|(number, (wall, motion))| row(moment, number, motion, wall));
+        let (walls, names): (Vec<_>, Vec<_>) = rows.unzip();
         Self::new("walls", WALL_COLUMNS, &walls, &names)
     }
 
@@ -120,8 +122,9 @@ pub(super) fn fixed_discs(surroundings: &Surroundings) -> impl Iterator<Item = G
     })
 }
 
-fn walls(moment: &Moment) -> Vec<(WallTableRow, String)> {
-    let Surroundings { boundaries, fixed_discs, moving, .. } = &*moment.surroundings;
+/// What goes as one, and the number of its motion.
+pub(super) fn walls(surroundings: &Surroundings) -> Vec<(MotionView, Option<f64>)> {
+    let Surroundings { boundaries, fixed_discs, moving, .. } = surroundings;
     // Pistons come first and are no motions.
     let by_themselves = boundaries.iter().filter(|shape| matches!(shape, Boundary::Piston { .. }));
     let first_motion = by_themselves.count().min(moving.len());
@@ -137,8 +140,7 @@ fn walls(moment: &Moment) -> Vec<(WallTableRow, String)> {
         .enumerate()
         .map(|(number, wall)| {
             let motion = (first_motion..moving.len()).contains(&number);
-            let motion = motion.then(|| (number - first_motion) as f64);
-            row(moment, number, motion, wall)
+            (wall, motion.then(|| (number - first_motion) as f64))
         })
         .collect()
 }
@@ -162,7 +164,7 @@ fn row(
     let place = if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() };
     let secs = moment.observables.time_step_secs;
     let (mut force, mut torque, mut work) = (DVec2::ZERO, 0.0, 0.0);
-    for contact in moment.contacts.iter().filter(|contact| touches(&wall, contact)) {
+    for contact in moment.contacts.iter().filter(|contact| is_of(contact.other, &wall)) {
         // Where the grain was when the forces were.
         let touched = contact.point - secs * moment.grains[contact.grain as usize].velocity;
         let offset = touched - place;
@@ -188,8 +190,9 @@ fn row(
     (row, name)
 }
 
-fn touches(wall: &MotionView, contact: &ContactState) -> bool {
-    match contact.other {
+/// True where a body goes as part of a wall.
+pub(super) fn is_of(body: OtherBody, wall: &MotionView) -> bool {
+    match body {
         OtherBody::Grain(_) => false,
         OtherBody::FixedDisc(disc) => wall.fixed_discs.contains(&(disc as usize)),
         OtherBody::Boundary(boundary) => wall.boundaries.contains(&(boundary as usize)),

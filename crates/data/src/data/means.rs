@@ -1,0 +1,154 @@
+//! Means over the time between two frames: the table of pairs, and what the tables of grains, walls and the pile have of
+//! such beside the moment. They are sums over all steps: pairs that have parted have their share.
+
+use glam::{DMat2, DVec2};
+
+use super::columns::{OTHER_KINDS, OtherBodies};
+use super::table::Table;
+use super::walls::{is_of, walls};
+use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber, Word};
+use crate::column_spec::{ColumnSpec, column};
+use crate::granular::GrainMeasures;
+use crate::sim::{ForceSums, Moment, PairSum};
+
+/// Tables of means, or columns for those that there are.
+pub(super) struct Means {
+    pub pairs: Table,
+    pub grains: Table,
+    pub walls: Table,
+    pub pile: Table,
+}
+
+impl Means {
+    /// `area` is that of the pile at the moment, m².
+    pub(super) fn of(
+        sums: &ForceSums,
+        moment: &Moment,
+        grains: &[GrainMeasures],
+        area: f64,
+    ) -> Self {
+        let ForceSums { secs, pairs, stresses, .. } = sums;
+        // Of a lost grain there is no cell.
+        let mean = |stress: DMat2, area: f64| {
+            stress * if area > 0.0 { 1.0 / (secs * area) } else { f64::NAN }
+        };
+        let of_grains = stresses.iter().zip(grains);
+        let of_grains: Vec<_> =
+            of_grains.map(|(&stress, grain)| mean(stress, grain.cell_area)).collect();
+        let counts = |(_, grain): &(&DMat2, &GrainMeasures)| !grain.cell_area.is_nan();
+        let of_pile = stresses.iter().zip(grains).filter(counts).map(|(&stress, _)| stress);
+        let of_pile = PileMeans { secs: *secs, stress: mean(of_pile.sum(), area) };
+        let of_wall = |(wall, _)| {
+            let impulses = pairs.iter().filter(|pair| is_of(pair.other, &wall));
+            -impulses.map(|pair| pair.impulse).sum::<DVec2>() / *secs
+        };
+        Self {
+            pairs: pairs_table(sums, moment),
+            grains: self::of_grains(&of_grains),
+            walls: of_walls(
+                &walls(&moment.surroundings).into_iter().map(of_wall).collect::<Vec<_>>(),
+            ),
+            pile: self::of_pile(&[of_pile]),
+        }
+    }
+}
+
+struct PairTableRow {
+    step: u64,
+    time_secs: f64,
+    secs: f64,
+    other_id: u64,
+    kind: u32,
+    /// Place in the list of names.
+    name: u32,
+    sum: PairSum,
+}
+
+const OVER: &str = "time since the frame before, or since the recording began: means are over it";
+
+const PAIR_COLUMNS: &[ColumnSpec<PairTableRow>] = &[
+    ColumnSpec::step(|row| row.step),
+    ColumnSpec::time(|row| row.time_secs),
+    column("mean_time", "s", OVER, Number(|row| row.secs)),
+    column("id_i", "", "grain i", Count(|row| row.sum.grain.into())),
+    column("id_j", "", "body j, as contacts have it", Count(|row| row.other_id)),
+    column("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
+    column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
+    column("steps", "", "steps in which it transmitted anything", Count(|row| row.sum.steps)),
+    column(
+        "normal_force",
+        "N",
+        "on i along the normals as they were, mean over mean_time, open or not; negative pulls",
+        Number(|row| row.sum.normal / row.secs),
+    ),
+    column(
+        "tangential_force",
+        "N",
+        "on i along (-ny, nx), likewise; times -radius the torque on either grain",
+        Number(|row| row.sum.tangential / row.secs),
+    ),
+    column("fx", "N", "force on i, likewise", Number(|row| row.sum.impulse.x / row.secs)),
+    column("fy", "N", "force on i, likewise", Number(|row| row.sum.impulse.y / row.secs)),
+];
+
+fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
+    let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
+    let others = OtherBodies::of(moment);
+    let row = |&sum: &PairSum| {
+        let (kind, other_id, name) = others.told(sum.other);
+        PairTableRow { step, time_secs, secs: sums.secs, other_id, kind, name, sum }
+    };
+    let rows: Vec<PairTableRow> = sums.pairs.iter().map(row).collect();
+    Table::new("pairs", PAIR_COLUMNS, &rows, &others.names)
+}
+
+pub(super) fn no_pairs() -> Table {
+    Table::new("pairs", PAIR_COLUMNS, &[], &[])
+}
+
+fn some(number: f64) -> Option<f64> {
+    (!number.is_nan()).then_some(number)
+}
+
+/// σ of a mean f ⊗ ℓ.
+const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = &[
+    column(
+        "mean_stress_xx",
+        "N/m",
+        "as stress_xx, mean over mean_time, with the area of the frame",
+        SomeNumber(|stress| some(stress.x_axis.x)),
+    ),
+    column("mean_stress_xy", "N/m", "likewise", SomeNumber(|stress| some(stress.y_axis.x))),
+    column("mean_stress_yx", "N/m", "likewise", SomeNumber(|stress| some(stress.x_axis.y))),
+    column("mean_stress_yy", "N/m", "likewise", SomeNumber(|stress| some(stress.y_axis.y))),
+];
+
+pub(super) fn of_grains(stresses: &[DMat2]) -> Table {
+    Table::new("grains", STRESS_COLUMNS, stresses, &[])
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct PileMeans {
+    secs: f64,
+    stress: DMat2,
+}
+
+pub(super) fn of_pile(means: &[PileMeans]) -> Table {
+    let secs = [column("mean_time", "s", OVER, Number(|means: &PileMeans| means.secs))];
+    let stresses: Vec<DMat2> = means.iter().map(|means| means.stress).collect();
+    let stresses = Table::new("measures", STRESS_COLUMNS, &stresses, &[]);
+    Table::new("measures", &secs, means, &[]).beside(stresses)
+}
+
+pub(super) fn of_walls(forces: &[DVec2]) -> Table {
+    const COLUMNS: &[ColumnSpec<DVec2>] = &[
+        column(
+            "mean_fx",
+            "N",
+            "force of the grains on it, mean over the time since the frame before",
+            SomeNumber(|force| some(force.x)),
+        ),
+        column("mean_fy", "N", "likewise", SomeNumber(|force| some(force.y))),
+    ];
+    Table::new("walls", COLUMNS, forces, &[])
+}
