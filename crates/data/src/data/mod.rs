@@ -15,15 +15,17 @@ mod parquet;
 mod reading;
 mod recording;
 mod recording_folder;
+mod step_columns;
 mod table;
 mod vtk;
 mod walls;
 
 pub use crate::scene::{DataSettings, FormatName};
-pub use columns::{Observed, STEP_COLUMNS};
+pub use columns::Observed;
 pub use format::{DEFAULT_FORMAT, Frame, RunFacts, check_format, formats_of};
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};
 pub use recording::{Recording, Times};
 pub(crate) use recording_folder::check_not_periodic;
 pub use recording_folder::{RecordingFolder, remove_recording};
+pub use step_columns::STEP_COLUMNS;
 pub use table::{Column, Table, Values};
