@@ -37,6 +37,12 @@ def read(file: Path) -> pd.DataFrame:
     return pd.DataFrame({name: numbers(list(column)) for name, column in zip(names, zip(*rows))})
 
 
+def of_moments(table: pd.DataFrame) -> list[str]:
+    """The columns without the means over the time since the frame before, which a moment alone does not have."""
+    return [name for name in table if not name.startswith(("mean_stress", "mean_time"))]
+
+
+
 def test_a_recording_is_that_of_the_command_line(tmp_path: Path) -> None:
     options = {"bond": 50, "dt": 1e-3}
     here, there = tmp_path / "here", tmp_path / "there"
@@ -56,14 +62,14 @@ def test_a_recording_is_that_of_the_command_line(tmp_path: Path) -> None:
         assert sorted(set(frames["step"])) == [0, 10, 20, 30, 40, 50]
         last = frames[frames["step"] == 50].reset_index(drop=True)
         now = pd.DataFrame(getattr(sim, table))
-        assert list(last) == list(now)
+        assert of_moments(last) == list(now)
         for name in now:
             if last[name].any() or name == "name_j":
                 np.testing.assert_array_equal(last[name].to_numpy(), now[name].to_numpy(), err_msg=name)
             else:
                 assert name in ("bond", "stretch"), "this law has none"
     assert list(read(here / "csv" / "steps.csv")) == list(sim.history)
-    assert list(read(here / "csv" / "measures.csv")) == list(sim.measures)
+    assert of_moments(read(here / "csv" / "measures.csv")) == list(sim.measures)
     assert list(read(here / "csv" / "histograms.csv")) == list(sim.histograms)
 
 
