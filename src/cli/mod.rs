@@ -18,7 +18,6 @@ use crate::output::{
     print_line, print_text, warn_of_steps, write_file,
 };
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, built_in, deposit};
-use crate::setting::Value;
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, SolverSettings, StopTest};
 use crate::threads::check_threads;
@@ -98,12 +97,7 @@ fn command() -> clap::Command {
     let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
     let told = |arg: clap::Arg| {
         let name = arg.get_id().as_str();
-        let default = pile.and_then(|settings| settings.get(name)).map(|value| match value {
-            Value::Number(number) => number.to_string(),
-            Value::Count(count) => count.to_string(),
-            Value::Switch(on) => on.to_string(),
-            Value::Word(word) => word.to_owned(),
-        });
+        let default = pile.and_then(|settings| settings.get(name));
         let is_first = FIRST.contains(&name);
         let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
         let arg = match default {

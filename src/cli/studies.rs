@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 
-use crate::config::{Config, parser_of};
+use crate::config::{Config, joined, parser_of};
 use crate::error::{Error, Result};
 use crate::headless::draw_snapshots;
 use crate::output::{
@@ -267,16 +267,17 @@ fn secs_of(text: &str) -> std::result::Result<f64, String> {
 
 /// A command for each run of a study, which may be given again where it was stopped.
 fn list_runs(study: &Path, runs: usize, out: &Path, quick: bool) -> Result<()> {
-    let quoted = |path: &Path| {
-        let allowed = "a name that a shell can be given";
-        let path = path.to_str().ok_or_else(|| Error::value("out", path.display(), allowed))?;
-        let quoted = shlex::try_quote(path);
-        quoted.map(String::from).map_err(|_| Error::value("out", path, allowed))
+    let text = |path: &Path| {
+        let allowed = "a name that is text";
+        let text = path.to_str().map(str::to_owned);
+        text.ok_or_else(|| Error::value("path", path.display(), allowed))
     };
-    let (study, out) = (quoted(study)?, quoted(out)?);
-    let quick = if quick { " --quick" } else { "" };
+    let (study, out) = (text(study)?, text(out)?);
     for run in 1..=runs {
-        print_line(format_args!("slump sweep {study} --out {out} --shard {run}/{runs}{quick}"));
+        let mut words = ["slump", "sweep", &study, "--out", &out].map(str::to_owned).to_vec();
+        words.extend(["--shard".to_owned(), format!("{run}/{runs}")]);
+        words.extend(quick.then(|| "--quick".to_owned()));
+        print_line(joined(&words));
     }
     Ok(())
 }

@@ -5,6 +5,8 @@
 //! and a table ([`About`]) from which options, controls and messages are made. `words!` does so for a
 //! setting that is one of a few words.
 
+use std::fmt;
+
 use serde::de::MapAccess;
 use serde::ser::SerializeMap;
 
@@ -121,6 +123,18 @@ pub enum Value {
     Switch(bool),
     /// One of a few words.
     Word(&'static str),
+}
+
+/// As command line and files write it.
+impl fmt::Display for Value {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(formatter),
+            Self::Count(count) => count.fmt(formatter),
+            Self::Switch(on) => on.fmt(formatter),
+            Self::Word(word) => word.fmt(formatter),
+        }
+    }
 }
 
 /// The kind of a setting's values.

@@ -56,6 +56,11 @@ impl Mean {
         1.0 - student.cdf((self.mean - bound) / self.standard_error)
     }
 
+    /// Standard deviation of the values; all numbers where there are fewer than two.
+    pub(super) fn spread(&self) -> f64 {
+        self.standard_error * (self.count as f64).sqrt()
+    }
+
     /// As [`Mean::p_above`], for below.
     pub(super) fn p_below(&self, bound: f64) -> f64 {
         Self { mean: -self.mean, ..*self }.p_above(-bound)

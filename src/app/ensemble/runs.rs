@@ -119,10 +119,7 @@ pub(super) fn scene_of(
 ) -> Result<Scene> {
     let Config { mut source, .. } = opened.config.clone();
     if opened.config.source.makes_new_pile() || opened.config.new_pile()?.is_none() {
-        source.grains = Some(pile.grains);
-        source.box_width = Some(pile.box_width_in_diameters);
-        source.seed = Some(pile.seed);
-        source.deposition = Some(pile.deposition);
+        source.set_new_pile(pile);
     }
     let config = Config { source, ..Config::default() };
     config.with_settings(settings).scene_from(grains)

@@ -75,8 +75,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Sets all grains' centres, m, and leaves velocities and impulses as they are. No way led there: grains that were
-    /// not lost are not lost by it.
+    /// Sets all grains' centres, m, and leaves velocities and impulses as they are. The ways of grains begin there, so that
+    /// no wall in between counts as gone through.
     ///
     /// # Errors
     /// Names what is refused, where these are not places of as many grains; then nothing is changed.

@@ -95,14 +95,7 @@ impl ForceSums {
             }
             let is_known = place < known && pairs[place].key() == pair;
             if !is_known {
-                let other = match other {
-                    Other::Grain(index) => OtherBody::Grain(index as u32),
-                    Other::FixedDisc(index) => OtherBody::FixedDisc(index as u32),
-                    Other::Feature(feature) => {
-                        OtherBody::Boundary(candidates.boundary_of(feature) as u32)
-                    }
-                };
-                pairs.push(PairSum::none(pair, other));
+                pairs.push(PairSum::none(pair, OtherBody::of(other, candidates)));
             }
             let at = if is_known { place } else { pairs.len() - 1 };
             let sum = &mut pairs[at];

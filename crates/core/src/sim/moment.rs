@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{Bond, TOUCH_IN_DIAMETERS};
-use crate::contact::{Contact, Impulse, Numbering, Other, Transmitted};
+use crate::contact::{Candidates, Contact, Impulse, Numbering, Other, Transmitted};
 use crate::setting::words;
 use crate::sim::observables::Observables;
 use crate::sim::settings::Settings;
@@ -106,6 +106,16 @@ pub enum OtherBody {
     Boundary(u32),
 }
 
+impl OtherBody {
+    pub(super) fn of(other: Other, candidates: &Candidates) -> Self {
+        match other {
+            Other::Grain(index) => Self::Grain(index as u32),
+            Other::FixedDisc(index) => Self::FixedDisc(index as u32),
+            Other::Feature(feature) => Self::Boundary(candidates.boundary_of(feature) as u32),
+        }
+    }
+}
+
 words! {
     /// What a contact does under Signorini's and Coulomb's laws.
     pub enum ContactStatus {
@@ -143,18 +153,14 @@ impl Simulation {
             let grain = contact.grain as usize;
             let (centre, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
             // A boundary is touched in a point.
-            let (other, radius_of_other) = match other {
-                Other::Grain(index) => (OtherBody::Grain(index as u32), world.grains.radii[index]),
-                Other::FixedDisc(index) => {
-                    (OtherBody::FixedDisc(index as u32), world.fixed_discs[index].radius)
-                }
-                Other::Feature(feature) => {
-                    (OtherBody::Boundary(candidates.boundary_of(feature) as u32), 0.0)
-                }
+            let radius_of_other = match other {
+                Other::Grain(index) => world.grains.radii[index],
+                Other::FixedDisc(index) => world.fixed_discs[index].radius,
+                Other::Feature(_) => 0.0,
             };
             Some(ContactState {
                 grain: contact.grain,
-                other,
+                other: OtherBody::of(other, candidates),
                 normal: contact.normal,
                 gap: contact.gap,
                 point: centre - (radius + 0.5 * contact.gap) * contact.normal,

@@ -302,7 +302,8 @@ fn kind_of_value(error: &clap::Error, command: &Command, argument: &str) -> Stri
     {
         format!("a whole number in {range}")
     } else {
-        "given".to_owned()
+        // What a parser of ours says is allowed.
+        source.map_or_else(|| "given".to_owned(), ToString::to_string)
     };
     match find(command, argument).and_then(Arg::get_help) {
         Some(help) => format!("{kind} ({help})"),

@@ -8,7 +8,6 @@ use crate::data::RunFacts;
 use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::scene::Scene;
-use crate::setting::Value;
 use crate::sim::Settings;
 
 impl Config {
@@ -43,17 +42,9 @@ impl Config {
 pub fn words_of(settings: &Settings, others: Option<&Settings>) -> Vec<String> {
     let differs = |name| others.is_none_or(|others| settings.get(name) != others.get(name));
     let names = Settings::about().map(|about| about.name).filter(|&name| differs(name));
-    let words = names.filter_map(|name| Some([format!("--{name}"), said(settings.get(name)?)]));
+    let words =
+        names.filter_map(|name| Some([format!("--{name}"), settings.get(name)?.to_string()]));
     words.flatten().collect()
-}
-
-fn said(value: Value) -> String {
-    match value {
-        Value::Number(number) => number.to_string(),
-        Value::Count(count) => count.to_string(),
-        Value::Switch(on) => on.to_string(),
-        Value::Word(word) => word.to_owned(),
-    }
 }
 
 /// Words as a shell takes them.

@@ -120,6 +120,13 @@ impl SceneSource {
         }
     }
 
+    /// Asks for this pile.
+    pub fn set_new_pile(&mut self, pile: &NewPile) {
+        let NewPile { grains, box_width_in_diameters, seed, deposition } = *pile;
+        (self.grains, self.box_width) = (Some(grains), Some(box_width_in_diameters));
+        (self.seed, self.deposition) = (Some(seed), Some(deposition));
+    }
+
     /// True if grains have to be put in place and settled.
     pub fn makes_new_pile(&self) -> bool {
         self.grains.is_some()

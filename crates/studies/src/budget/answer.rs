@@ -33,7 +33,7 @@ pub(crate) struct CauseRow {
 /// Whether a number is one of the grains and their law, rather than of the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Trust {
+pub(crate) enum Trust {
     /// Neither the method nor the choice of a law moves it by more than what was asked for.
     Yes,
     /// The method does not; the choice of a law does, or that is not known yet.
@@ -45,8 +45,7 @@ pub enum Trust {
 }
 
 impl Trust {
-    /// In a word or a few.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Yes => "yes",
             Self::Mostly => "mostly",
@@ -115,7 +114,7 @@ pub(super) fn budget_of(
         within,
         starts: value.count,
         value: failure.is_none().then_some(ends(&value)),
-        spread: failure.is_none().then(|| value.standard_error * (value.count as f64).sqrt()),
+        spread: failure.is_none().then(|| value.spread()),
         itself,
         limit_adds: None,
         left_by_time_step: Vec::new(),
@@ -201,7 +200,7 @@ pub(super) fn is_inside([_, low, high]: [f64; 3], within: f64) -> bool {
     low >= -within && high <= within
 }
 
-pub(super) fn is_outside([_, low, high]: [f64; 3], within: f64) -> bool {
+fn is_outside([_, low, high]: [f64; 3], within: f64) -> bool {
     low > within || high < -within
 }
 
@@ -216,10 +215,19 @@ impl QuantityBudget {
         of_steps().rfind(|row| row.adds.is_some()).or_else(|| of_steps().next_back())
     }
 
+    /// True where a cause of that share moves the value by more than is allowed.
+    pub(super) fn is_any_outside(&self, share: Share) -> bool {
+        let of_share = self.causes.iter().filter(|row| row.share == share);
+        of_share.filter_map(|row| row.adds).any(|ends| is_outside(ends, self.within))
+    }
+
+    /// A number in words, with the quantity's unit.
+    pub(super) fn with_unit(&self, number: &str) -> String {
+        if self.unit.is_empty() { number.to_owned() } else { format!("{number} {}", self.unit) }
+    }
+
     fn judged(&self) -> Trust {
         let of = |share: Share| self.causes.iter().filter(move |row| row.share == share);
-        let is_any_outside =
-            |share| of(share).filter_map(|row| row.adds).any(|ends| is_outside(ends, self.within));
         // Of the time step the smallest shows most of the whole effect. What a scene does not survive under another law is
         // no doubt about its own.
         let smallest = self.smallest_step().map(|row| &row.changed);
@@ -233,7 +241,7 @@ impl QuantityBudget {
                 .all(|row| row.adds.is_some_and(|ends| is_inside(ends, self.within)))
         };
         match (is_all_inside(Share::Method), is_all_inside(Share::Law)) {
-            _ if is_any_outside(Share::Method) => Trust::No,
+            _ if self.is_any_outside(Share::Method) => Trust::No,
             (true, true) => Trust::Yes,
             (true, false) => Trust::Mostly,
             _ => Trust::NotKnownYet,

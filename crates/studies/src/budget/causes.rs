@@ -91,6 +91,7 @@ const THRESHOLD: f64 = 2.0;
 /// `resizes` is true where their number can be changed.
 pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
     let base = scene.settings();
+    let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
     let mut all = Vec::new();
     let mut add = |cause, label: String, settings: Settings, cost| {
         let mut changed = scene.clone();
@@ -101,7 +102,6 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
         }
     };
     if base.stepper.uses_method() {
-        let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
         let label = "steps solved 100 times better".into();
         add(Cause::Unsolved, label, tighter(base, is_driven), 2.0);
     }
@@ -128,7 +128,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     }
     if rubs && base.stepper.reads("friction-model") {
         let mut settings = base;
-        let is_coulomb = base.solver.model(false) == FrictionModel::Coulomb;
+        let is_coulomb = base.solver.model(is_driven) == FrictionModel::Coulomb;
         settings.solver.method = Method::Auto;
         settings.solver.friction_model =
             if is_coulomb { FrictionModel::Tresca } else { FrictionModel::Coulomb };

@@ -196,7 +196,7 @@ pub(super) fn collect(
 fn width(runs: &Runs, quantity: usize) -> f64 {
     let values: Vec<f64> = (0..FIRST).filter_map(|start| runs.value(0, start, quantity)).collect();
     let mean = mean(&values);
-    let spread = mean.standard_error * (values.len() as f64).sqrt();
+    let spread = mean.spread();
     let rough = PART * mean.mean.abs().max(if spread.is_finite() { spread } else { 0.0 });
     format!("{rough:.0e}").parse().unwrap_or(rough)
 }

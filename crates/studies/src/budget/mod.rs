@@ -16,17 +16,17 @@ use std::path::Path;
 
 use serde::Serialize;
 
-pub use self::answer::Trust;
 use self::answer::{Design, QuantityBudget, budget_of};
 use self::causes::variants;
 use self::collect::{Ended, Job, Limits, Ran, collect};
 use self::quantity::{Quantity, Window};
 use self::starts::{RunValues, Starts, run, said_of};
-use crate::config::Config;
+use crate::config::{Config, joined};
 use crate::error::{self, Error, Result};
 use crate::output::{check_writable, print_line, print_text};
 use crate::runner::Runner;
 use crate::scene::Scene;
+use crate::sim::Settings;
 
 /// What a budget is asked for.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ pub struct BudgetOptions {
     pub to_secs: Option<f64>,
     /// Half the width of every interval, in the quantity's unit; a tenth of the value where there is none.
     pub within: Option<f64>,
-    /// Time of this machine's cores together, s of each.
+    /// Time to take on all cores, s.
     pub cost_secs: f64,
 }
 
@@ -51,6 +51,8 @@ pub struct BudgetOptions {
 pub struct ErrorBudget {
     program: &'static str,
     version: &'static str,
+    /// What makes it again, but for the time that it may take.
+    command: String,
     scene: String,
     /// How it is stepped, in a few words.
     stepped: String,
@@ -140,6 +142,7 @@ pub fn made(
         has_seeds: starts.pile.is_some(),
         time_step_secs: settings.parameters.time_step_secs,
     };
+    let command = command_of(options, &settings)?;
     let of = |runs: &collect::Runs, ended: Ended| {
         let of_quantity = |(number, quantity): (usize, &Quantity)| {
             let itself = itself.as_ref().filter(|ran| ran.values.failure.is_none());
@@ -149,6 +152,7 @@ pub fn made(
         ErrorBudget {
             program: "slump",
             version: env!("CARGO_PKG_VERSION"),
+            command: command.clone(),
             scene: starts.scene.name.clone(),
             stepped: said_of(&settings),
             from_secs: window.from_secs,
@@ -162,6 +166,18 @@ pub fn made(
         watch(&of(runs, Ended::Stopped))
     })?;
     Ok(of(&runs, ended))
+}
+
+fn command_of(options: &BudgetOptions, settings: &Settings) -> Result<String> {
+    let mut words = vec!["slump".to_owned(), "budget".to_owned()];
+    words.extend(options.config.words(settings)?);
+    words.extend(options.quantities.iter().flat_map(|one| ["--quantity".to_owned(), one.clone()]));
+    let BudgetOptions { from_secs, to_secs, within, .. } = *options;
+    let numbers = [("--from", from_secs), ("--to", to_secs), ("--within", within)];
+    for (name, number) in numbers {
+        words.extend(number.into_iter().flat_map(|number| [name.to_owned(), number.to_string()]));
+    }
+    Ok(joined(&words))
 }
 
 fn window_of(options: &BudgetOptions, starts: &Starts) -> Result<Window> {

@@ -18,8 +18,9 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
     write_file(&folder.join("budget.json"), format!("{json}\n").as_bytes())?;
     let mut csv = Vec::new();
     let mut text = format!(
-        "# {}: physics, time step or solver?\n\n{}, {} to {} s.\n",
+        "# {}: physics, time step or solver?\n\n`{}`\n\n{}, {} to {} s.\n",
         budget.scene,
+        budget.command,
         budget.stepped,
         short(budget.from_secs),
         short(budget.to_secs)
@@ -43,7 +44,7 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
             one.answer
         );
         if one.value.is_some() {
-            write_sheet(folder, &name, &sheet(budget, one), "slump budget")?;
+            write_sheet(folder, &name, &sheet(budget, one), &budget.command)?;
             let _ = write!(text, "![{name}]({name}.png)\n\n");
         }
         text.push_str(&table.to_markdown());
@@ -151,10 +152,9 @@ fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     charts.extend(by_cost(one, &label));
     let width = 900 + 500 * (charts.len() as u32 - 1);
     let caption = vec![format!(
-        "{} starts. Lines: intervals that hold together in 95 % of budgets; dashes: ± {}{}.",
+        "{} starts. Lines: intervals that hold together in 95 % of budgets; dashes: ± {}.",
         one.starts,
-        short(one.within),
-        if one.unit.is_empty() { String::new() } else { format!(" {}", one.unit) }
+        one.with_unit(&short(one.within))
     )];
     Sheet { size: (width, 200 + 50 * rows.len().max(4) as u32), charts, caption }
 }

@@ -52,25 +52,25 @@ impl Starts {
     pub(super) fn of(config: &Config, states: &Path) -> Result<Self> {
         let base = config.base_scene()?;
         let scene = config.change(&base)?;
-        let pile = config.new_pile()?.or_else(|| {
-            let is_shipped = config.source.initial.is_none()
-                && config.source.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
-                    == Config::DEFAULT_SCENE;
-            is_shipped.then(NewPile::default)
-        });
-        if pile.is_some() {
+        let pile = config.new_pile()?;
+        let mut starts =
+            Self { config: config.clone(), base, scene, pile, states: states.to_owned() };
+        if starts.is_default_scene() && config.source.initial.is_none() {
+            starts.pile.get_or_insert_default();
+        }
+        if starts.pile.is_some() {
             check_writable("out", states)?;
         }
-        Ok(Self { config: config.clone(), base, scene, pile, states: states.to_owned() })
+        Ok(starts)
     }
 
     /// True where piles of another number of grains can be made.
     pub(super) fn resizes(&self) -> bool {
-        self.pile.is_some() && !self.is_of_file()
+        self.pile.is_some() && self.is_default_scene()
     }
 
-    fn is_of_file(&self) -> bool {
-        self.config.source.scene.as_deref().is_some_and(|name| name != Config::DEFAULT_SCENE)
+    fn is_default_scene(&self) -> bool {
+        self.config.source.scene.as_deref().is_none_or(|name| name == Config::DEFAULT_SCENE)
     }
 
     /// The seed of a start; none where grains are moved. The seed of the shipped pile, which was chosen for what it shows,
@@ -89,11 +89,8 @@ impl Starts {
                 let pile = NewPile { seed, ..pile.clone() };
                 let grains = settled_pile(&self.states, &pile, |_| true)?;
                 let mut config = self.config.clone();
-                if !self.is_of_file() {
-                    let source = &mut config.source;
-                    source.grains = Some(pile.grains);
-                    source.box_width = Some(pile.box_width_in_diameters);
-                    (source.seed, source.deposition) = (Some(seed), Some(pile.deposition));
+                if self.is_default_scene() {
+                    config.source.set_new_pile(&pile);
                 }
                 config.scene_from(grains)?
             }

@@ -1,7 +1,7 @@
 //! A budget in words: the paragraph that is read first.
 
 use super::answer::{
-    CauseRow, Design, QuantityBudget, SMOOTH, Trust, halvings, is_inside, is_outside, is_seen,
+    CauseRow, Design, QuantityBudget, SMOOTH, Trust, halvings, is_inside, is_seen,
 };
 use super::causes::{Cause, DIVISORS, Share, short};
 use super::collect::{Ended, Runs};
@@ -23,6 +23,9 @@ fn rounded(number: f64, half: f64) -> String {
     if (-4.0..0.0).contains(&decimals) {
         let unit = 10f64.powf(-decimals);
         return format!("{:.0}", (number / unit).round() * unit);
+    }
+    if number.abs() < 0.5 * 10f64.powf(-decimals) {
+        return "0".into();
     }
     let digits = (number.abs().max(half).log10().floor() + decimals).max(0.0);
     format!("{number:.*e}", digits as usize)
@@ -56,18 +59,10 @@ impl Words<'_> {
         let (mut seen, mut unseen, mut missing) = (Vec::new(), Vec::new(), Vec::new());
         for row in others {
             match row.adds {
-                Some(ends) if is_seen(ends) => {
-                    seen.push((ends[0].abs(), self.of_effect(row, ends)))
+                Some(ends) if self.is_told(ends) => {
+                    seen.push((ends[0].abs(), self.of_effect(row, ends)));
                 }
-                Some([_, low, high]) => {
-                    let most = low.abs().max(high.abs());
-                    let of = self.of_unseen(row);
-                    unseen.push(if most == 0.0 {
-                        of
-                    } else {
-                        format!("{of} (at most {})", self.number(most, most))
-                    });
-                }
+                Some(ends) => unseen.push(self.of_unseen(row) + &self.at_most(ends)),
                 None => missing.push(row),
             }
         }
@@ -89,6 +84,25 @@ impl Words<'_> {
         rounded(number, half.max(SMOOTH * self.budget.within))
     }
 
+    /// True where an effect is seen and is more than what counts as none.
+    fn is_told(&self, [mean, low, high]: [f64; 3]) -> bool {
+        is_seen([mean, low, high]) && low.abs().max(high.abs()) > SMOOTH * self.budget.within
+    }
+
+    /// How large an effect may be that is not told; nothing where it is none at all.
+    fn at_most(&self, [_, low, high]: [f64; 3]) -> String {
+        let (most, least) = (low.abs().max(high.abs()), SMOOTH * self.budget.within);
+        let said =
+            |words: &str, number: String| format!(" ({words} {})", self.budget.with_unit(&number));
+        if most == 0.0 {
+            String::new()
+        } else if most <= least {
+            said("below", short(least))
+        } else {
+            said("at most", self.number(most, most))
+        }
+    }
+
     fn with_interval(&self, mean: f64, half: f64) -> String {
         let mean = self.number(mean, half);
         if half.is_infinite() || half <= SMOOTH * self.budget.within {
@@ -97,33 +111,28 @@ impl Words<'_> {
         format!("{mean} ± {}", rounded(half, half))
     }
 
-    fn unit(&self) -> String {
-        let unit = self.budget.unit;
-        if unit.is_empty() { String::new() } else { format!(" {unit}") }
-    }
-
     fn of_value(&self) -> String {
         let QuantityBudget { quantity, starts, spread, itself, .. } = self.budget;
         let [mean, _, high] = self.budget.value.unwrap_or([f64::NAN; 3]);
-        let (value, unit, spread) =
-            (self.with_interval(mean, high - mean), self.unit(), spread.unwrap_or(0.0));
+        let spread = spread.unwrap_or(0.0);
+        let value = self.budget.with_unit(&self.with_interval(mean, high - mean));
         if self.design.has_seeds {
             let itself = itself.map_or(String::new(), |itself| {
                 format!(" The pile that was asked for has {}.", rounded(itself, spread))
             });
             return format!(
-                "{quantity} is {value}{unit} over {starts} piles that differ in their seed; single ones scatter by {}.{itself}",
+                "{quantity} is {value} over {starts} piles that differ in their seed; single ones scatter by {}.{itself}",
                 rounded(spread, spread)
             );
         }
         if spread <= SMOOTH * self.budget.within {
             return format!(
-                "{quantity} is {}{unit}, and all but the same where grains start 1e-9 d elsewhere.",
-                self.number(mean, 0.0)
+                "{quantity} is {}, and all but the same where grains start 1e-9 d elsewhere.",
+                self.budget.with_unit(&self.number(mean, 0.0))
             );
         }
         format!(
-            "{quantity} is {value}{unit} over {starts} starts that differ by 1e-9 d; single ones scatter by {}: the scene is \
+            "{quantity} is {value} over {starts} starts that differ by 1e-9 d; single ones scatter by {}: the scene is \
              chaotic.",
             rounded(spread, spread)
         )
@@ -132,14 +141,15 @@ impl Words<'_> {
     fn of_time_step(&self) -> Option<String> {
         let smallest = self.budget.smallest_step()?;
         let [mean, low, high] = smallest.adds?;
-        let (value, unit) = (self.value_of(mean, high - mean), self.unit());
+        let value = self.budget.with_unit(&self.value_of(mean, high - mean));
         let effect = self.effect([-mean, -high, -low]);
         let mut said =
-            format!("The time step {effect}: at {} the value is {value}{unit}", smallest.changed);
+            format!("The time step {effect}: at {} the value is {value}", smallest.changed);
         said += &match self.budget.limit_adds {
             Some([mean, low, high]) if is_seen([mean, low, high]) => {
                 let [base, ..] = self.budget.value.unwrap_or([f64::NAN; 3]);
-                format!(", at Δt → 0 {}{unit}.", self.with_interval(base + mean, high - mean))
+                let value = self.with_interval(base + mean, high - mean);
+                format!(", at Δt → 0 {}.", self.budget.with_unit(&value))
             }
             Some(_) => ".".into(),
             None if halvings(self.runs, self.design, self.number).is_some() => {
@@ -159,19 +169,16 @@ impl Words<'_> {
 
     /// What is said of an effect, by what it adds.
     fn effect(&self, [mean, low, high]: [f64; 3]) -> String {
-        let (half, unit) = (high - mean, self.unit());
-        let farthest = low.abs().max(high.abs());
-        if farthest == 0.0 {
-            "changes nothing".into()
-        } else if !is_seen([mean, low, high]) {
-            format!(
-                "has no effect that is seen (at most {}{unit})",
-                self.number(farthest, farthest)
-            )
+        let told = |number: f64| {
+            let number = self.with_interval(number, high - mean);
+            self.budget.with_unit(&number)
+        };
+        if !self.is_told([mean, low, high]) {
+            format!("has no effect that is seen{}", self.at_most([mean, low, high]))
         } else if mean > 0.0 {
-            format!("adds {}{unit}", self.with_interval(mean, half))
+            format!("adds {}", told(mean))
         } else {
-            format!("takes {}{unit} away", self.with_interval(-mean, half))
+            format!("takes {} away", told(-mean))
         }
     }
 
@@ -232,17 +239,13 @@ impl Words<'_> {
     }
 
     fn of_trust(&self) -> String {
-        let within = format!("{}{}", short(self.budget.within), self.unit());
+        let within = self.budget.with_unit(&short(self.budget.within));
         match self.budget.trust {
             Trust::Yes => format!(
                 "So neither the method nor the choice of a law moves it by more than {within}."
             ),
             Trust::Mostly => {
-                let laws = self.budget.causes.iter().filter(|row| row.share == Share::Law);
-                let does = laws
-                    .filter_map(|row| row.adds)
-                    .any(|ends| is_outside(ends, self.budget.within));
-                let law = if does {
+                let law = if self.budget.is_any_outside(Share::Law) {
                     "the choice of a law does"
                 } else {
                     "whether the choice of a law does is not known yet"
@@ -264,7 +267,7 @@ impl Words<'_> {
         let within = self.budget.within;
         let tried = self.budget.left_by_time_step.iter().zip([1].into_iter().chain(DIVISORS));
         let mut enough = tried.filter(|((_, left), _)| is_inside(*left, within));
-        let said = format!("{}{}", short(within), self.unit());
+        let said = self.budget.with_unit(&short(within));
         Some(match enough.next() {
             _ if self.budget.left_by_time_step.is_empty() => return None,
             Some((_, 1)) => return None,
@@ -322,6 +325,7 @@ mod tests {
             (4.717e-5, 2.29e-5, "5e-5"),
             (1234.5, 21.0, "1230"),
             (-0.001, 0.05, "0.00"),
+            (1e-12, 5e-7, "0"),
         ];
         for (mean, half, said) in all {
             assert_eq!(rounded(mean, half), said);
