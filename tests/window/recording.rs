@@ -12,7 +12,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     let mut robot = Robot::open(pile());
     for step in 0..90 {
         if step == 30 {
-            robot.click("2e-3");
+            robot.type_number("Δt, time step", "2e-3");
         }
         if step == 50 {
             robot.type_number("Bond", "80");
@@ -70,9 +70,9 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     robot.take_steps(50);
     let curve = curve_of(&robot);
     robot.seek(0.02);
-    robot.click("5e-3");
+    robot.type_number("Δt, time step", "5e-3");
     assert!(robot.state().frame.branching);
-    robot.click("Step");
+    robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.steps(), 21);
     assert_eq!(robot.world().curve.len(), 22);
     assert!((robot.state().frame.recorded_secs() - 0.025).abs() < 1e-12);
@@ -227,7 +227,7 @@ fn runs_have_the_names_that_they_are_given() {
     robot.take_steps(3);
     robot.key(egui::Key::R);
     robot.take_steps(2);
-    robot.click("Physics");
+    robot.click("Compare");
     let number = robot.state().frame.past[0].number;
     robot.type_number(&format!("Name of run {number}"), "first try");
     robot.type_number("Name of this run", "second");

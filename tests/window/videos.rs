@@ -90,7 +90,7 @@ pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
     let preferences =
         Preferences { folder: folder.to_owned(), picture_size: size, ..Preferences::default() };
     let mut robot = Robot::open_with_gpu(pile(), preferences);
-    robot.click("See");
+    robot.click("Save");
     robot
 }
 

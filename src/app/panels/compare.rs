@@ -2,7 +2,6 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::physics::PAPER_TIME_STEPS;
 use crate::app::budget::PAPER;
 use crate::app::setting_control::written;
 use crate::app::state::AppState;
@@ -14,6 +13,8 @@ use crate::solver::{Fallback, FrictionModel, METHODS, Method, MethodInfo, Solver
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::FrictionCone;
 
+/// The paper's time steps, s.
+const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 /// Most worlds side by side.
 pub(crate) const MOST_WORLDS: usize = 6;
 
@@ -153,7 +154,7 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.with_layout(left, |ui| {
                 let chosen = Button::selectable(state.selected == index, name.as_str());
-                let hint = format!("{name}\nPhysics and Solver are about this world.");
+                let hint = format!("{name}\nSliders, Law and solver are about this world.");
                 if ui.add(chosen.truncate()).on_hover_text(hint).clicked() {
                     state.selected = index;
                 }

@@ -1,4 +1,4 @@
-//! Panel: the pinned grain and its contacts.
+//! The pinned grain and its contacts, over the scene.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -7,14 +7,24 @@ use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
-/// Shows the panel; nothing without a pinned grain.
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+/// Shows the pinned grain over the scene; nothing where there is none.
+pub(crate) fn show(ui: &Ui, state: &mut AppState) {
     let Some(pinned) = state.mouse.pinned else { return };
     let Some(world) = state.frame.worlds.get(pinned.world) else { return };
-    describe(ui, world, pinned.grain);
-    ui.add_space(4.0);
-    contacts(ui, world, pinned.grain);
-    if ui.button("Unpin").clicked() {
+    let corner = state.controls.get("scene").map_or(egui::Pos2::ZERO, egui::Rect::right_top);
+    let mut unpins = false;
+    egui::Area::new(egui::Id::unique("pinned grain"))
+        .pivot(egui::Align2::RIGHT_TOP)
+        .fixed_pos(corner + egui::vec2(-8.0, 8.0))
+        .show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                describe(ui, world, pinned.grain);
+                ui.add_space(4.0);
+                contacts(ui, world, pinned.grain);
+                unpins = ui.button("Unpin").clicked();
+            });
+        });
+    if unpins {
         state.mouse.pinned = None;
     }
 }
@@ -85,10 +95,21 @@ fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
     area.show(ui, |ui| grid.show(ui, rows));
 }
 
+/// Larger numbers are written with an exponent.
+const MOST_WRITTEN: f64 = 1e4;
+
+/// A number to three decimals, in few characters however large it is.
+pub(super) fn compact(number: f64) -> String {
+    if number.abs() < MOST_WRITTEN { format!("{number:.3}") } else { format!("{number:.2e}") }
+}
+
 /// A number with four digits and a prefixed unit.
 pub(super) fn si(value: f64, unit: &str) -> String {
     let (prefix, factor) = si_prefix(value);
     let number = value / factor;
+    if number.abs() >= MOST_WRITTEN {
+        return format!("{number:.3e} {prefix}{unit}");
+    }
     let decimals = match number.abs() {
         100.0.. => 1,
         10.0.. => 2,
