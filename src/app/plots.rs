@@ -125,6 +125,9 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     let group = egui::Id::unique("time");
     let [least, most] = least_span(data, quantity, factor);
     let height = (ui.available_height() - 2.0).max(40.0);
+    // A ghost of a long run does not stretch the axis of a short one.
+    let ends = data.worlds.iter().filter_map(|world| world.curve.rows().last());
+    let until_secs = ends.map(|row| row.time_secs).fold(data.until_secs, f64::max);
     let response = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " s")
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
@@ -138,7 +141,11 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
-                let values = points(ghost, |row| scaled((quantity.value)(row)) / factor);
+                let shown = |row: &Observables| match row.time_secs <= until_secs {
+                    true => scaled((quantity.value)(row)) / factor,
+                    false => f64::NAN,
+                };
+                let values = points(ghost, shown);
                 let grey = Color32::from_gray(128).gamma_multiply(0.6);
                 plot.line(Line::new("the run before", values).color(grey).width(1.2));
             }
@@ -232,10 +239,15 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
 
 /// Four marks at the most, at round numbers, or at whole powers of ten.
 fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
-    let (values, step) = ticks(grid.bounds.0, grid.bounds.1, 4);
-    let step_size = if log { step.max(1.0) } else { step };
-    let is_mark = |value: &f64| step == step_size || value.fract() == 0.0;
-    values.into_iter().filter(is_mark).map(|value| GridMark { value, step_size }).collect()
+    let (low, high) = grid.bounds;
+    if log {
+        let step_size = ((high - low) / 3.0).ceil().max(1.0);
+        let marks = (low / step_size).ceil() as i64..=(high / step_size).floor() as i64;
+        let mark = |count: i64| GridMark { value: count as f64 * step_size, step_size };
+        return marks.map(mark).collect();
+    }
+    let (values, step_size) = ticks(low, high, 4);
+    values.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
 /// Labels of the marks: numbers, or the powers of ten that numbers stand for.

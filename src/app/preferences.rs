@@ -49,7 +49,7 @@ pub struct Preferences {
     pub gravity: bool,
     /// Size of the window, points; none before the first.
     pub window_points: Option<[f64; 2]>,
-    /// Simulated time per time on the wall.
+    /// Simulated time per time on the wall, of films as well.
     pub speed: f64,
     /// As fast as the machine computes, whatever `speed` says.
     pub full_speed: bool,
@@ -57,8 +57,6 @@ pub struct Preferences {
     pub picture_size: [u32; 2],
     /// Pictures in a second of exported videos.
     pub video_rate_hz: f64,
-    /// Simulated time per time of exported videos.
-    pub video_speed: f64,
     /// Diameter of grains that the mouse adds, in mean diameters.
     pub new_grain_diameters: f64,
     /// Where exported files go.
@@ -91,7 +89,6 @@ impl Default for Preferences {
             full_speed: false,
             picture_size: [1600, 1000],
             video_rate_hz: 25.0,
-            video_speed: 1.0,
             new_grain_diameters: 1.0,
             folder: PathBuf::from("."),
             data: DataChoices::default(),

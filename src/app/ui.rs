@@ -39,7 +39,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     if state.preferences.folded {
         unfold(ui, state);
     }
-    grain::show(ui, state);
+    grain::show_over_scene(ui, state);
     trust::show(ui, state);
     help::show(ui, state);
 }

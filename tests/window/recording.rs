@@ -76,11 +76,15 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     assert_eq!(robot.steps(), 21);
     assert_eq!(robot.world().curve.len(), 22);
     assert!((robot.state().frame.recorded_secs() - 0.025).abs() < 1e-12);
-    assert_eq!(robot.state().frame.past.len(), 1);
+    let past = robot.state().frame.past.clone();
+    assert_eq!(past.len(), 1);
+    let of_past = past[0].worlds[0].controls.settings.parameters.time_step_secs;
+    assert_eq!(of_past, 1e-3, "the run before is told of with its own time step");
 
     robot.command_key(egui::Key::Z);
     robot.settle();
     assert_eq!(curve_of(&robot), curve);
+    assert_eq!(robot.settings().parameters.time_step_secs, 1e-3, "and so are its sliders");
     let past = robot.state().frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
     // What is undone can be done again, as often as one likes.

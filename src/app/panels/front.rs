@@ -100,7 +100,7 @@ fn pace(ui: &mut Ui, state: &mut AppState) {
     }
 }
 
-/// The next slower or faster pace.
+/// The next slower or faster pace; nothing is faster than all that the machine can.
 pub(crate) fn change_pace(state: &mut AppState, is_faster: bool) {
     let now = state.preferences.speed;
     let mut paces = PACES.into_iter();
@@ -109,7 +109,8 @@ pub(crate) fn change_pace(state: &mut AppState, is_faster: bool) {
     } else {
         paces.rev().find(|&pace| pace < now)
     };
-    (state.preferences.speed, state.preferences.full_speed) = (next.unwrap_or(now), false);
+    state.preferences.full_speed = is_faster && next.is_none();
+    state.preferences.speed = next.unwrap_or(now);
     state.live.send(Command::SetPace(state.preferences.pace()));
 }
 

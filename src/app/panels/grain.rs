@@ -1,14 +1,31 @@
-//! The pinned grain and its contacts, over the scene.
+//! The pinned grain: on its page with its contacts, or in a corner of the scene.
 
 use egui::{RichText, ScrollArea, Ui};
 
+use super::Page;
 use crate::app::state::AppState;
 use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
-/// Shows the pinned grain over the scene; nothing where there is none.
-pub(crate) fn show(ui: &Ui, state: &mut AppState) {
+/// Shows the pinned grain with its contacts; nothing where there is none.
+pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
+    let Some(pinned) = state.mouse.pinned else { return };
+    let Some(world) = state.frame.worlds.get(pinned.world) else { return };
+    describe(ui, world, pinned.grain);
+    ui.add_space(4.0);
+    contacts(ui, world, pinned.grain);
+    if ui.button("Unpin").clicked() {
+        state.mouse.pinned = None;
+    }
+    ui.separator();
+}
+
+/// Shows it in a corner of the scene where its page is not open.
+pub(crate) fn show_over_scene(ui: &Ui, state: &mut AppState) {
+    if state.preferences.page == Some(Page::Pile) {
+        return;
+    }
     let Some(pinned) = state.mouse.pinned else { return };
     let Some(world) = state.frame.worlds.get(pinned.world) else { return };
     let corner = state.controls.get("scene").map_or(egui::Pos2::ZERO, egui::Rect::right_top);
@@ -19,15 +36,17 @@ pub(crate) fn show(ui: &Ui, state: &mut AppState) {
         .show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 describe(ui, world, pinned.grain);
-                ui.add_space(4.0);
-                contacts(ui, world, pinned.grain);
-                unpins = ui.button("Unpin").clicked();
+                let unpin = ui.button("Unpin");
+                unpins = unpin.on_hover_text("Its contacts are listed under More, Pile").clicked();
             });
         });
     if unpins {
         state.mouse.pinned = None;
     }
 }
+
+/// Slower than this, m/s, a grain rests: what is left is the solver's.
+const AT_REST: f64 = 1e-8;
 
 /// The state of a grain, as a small table.
 pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
@@ -43,10 +62,8 @@ pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         let at = grain.position / diameter;
         row("position", format!("{:.3}, {:.3} d", at.x, at.y));
         row("radius", format!("{:.3} d", grain.radius / diameter));
-        row(
-            "velocity",
-            format!("{}, {}", si(grain.velocity.x, "m/s"), si(grain.velocity.y, "m/s")),
-        );
+        let speed = |along: f64| si(if along.abs() < AT_REST { 0.0 } else { along }, "m/s");
+        row("velocity", format!("{}, {}", speed(grain.velocity.x), speed(grain.velocity.y)));
         row("spin", format!("{:.3} rad/s", grain.angular_velocity));
         row("overlap", format!("{:.3} % of d", 100.0 * grain.overlap / diameter));
         row("force Σ|N|", si(grain.force, "N"));

@@ -67,6 +67,7 @@ impl Page {
             Self::Pile => {
                 run::show(ui, state);
                 ui.separator();
+                grain::show(ui, state);
                 grabbing::show(ui, state);
             }
             Self::Solver => {

@@ -249,5 +249,8 @@ fn title(run: &PastRun) -> String {
 
 /// The run that shows as a ghost.
 pub(super) fn ghost(state: &AppState) -> Option<&PastRun> {
-    state.frame.past.last().filter(|_| state.preferences.ghost)
+    let count = state.frame.worlds.len();
+    // Of another comparison, a ghost would stand beside numbers that are not its own.
+    let is_alike = |run: &&PastRun| state.preferences.ghost && run.worlds.len() == count;
+    state.frame.past.last().filter(is_alike)
 }

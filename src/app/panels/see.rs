@@ -100,10 +100,8 @@ fn films(ui: &mut Ui, state: &mut AppState) {
         let [least, most] = VIDEO_RATES_HZ;
         let rate = egui::DragValue::new(&mut state.preferences.video_rate_hz).range(least..=most);
         ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
-        let hint = "Simulated seconds in a second of it: 1 is the pace of nature.";
-        let label = ui.label("pace ×").on_hover_text(hint);
-        let speed = egui::DragValue::new(&mut state.preferences.video_speed).range(1e-6..=1e6);
-        ui.add(speed.speed(0.01).max_decimals(6)).labelled_by(label.id);
+        let pace = format!("at the pace of watching, {}×", state.preferences.speed);
+        ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
         let video_hint = "What was recorded of all worlds, or the stretch that is named below, as MP4. The run may go on meanwhile.";
@@ -175,7 +173,7 @@ fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) 
         picture: scene_picture(state, style, size, false),
         slumps: state.slumps(),
         rate_hz,
-        speed: state.preferences.video_speed,
+        speed: state.preferences.speed,
         stretch: state.exports.data.stretch,
         folder: state.preferences.folder.clone(),
         stem: file_stem(state),
