@@ -36,8 +36,8 @@ for part in 1 2 3 4 5 6 7 8 9 10; do
     echo "$(value "s['step']") steps, $(resident_mib) MiB"
     [ "$part" -ne 5 ] || halfway=$(resident_mib)
 done
-# Keyframes, film and curves have 256, 64 and 6 MiB.
-[ "$(resident_mib)" -le $((halfway + 340)) ] || fail "more than all budgets together since half of the time"
+# Keyframes, stored moments and curves have 96, 64 and 6 MiB.
+[ "$(resident_mib)" -le $((halfway + 180)) ] || fail "more than all budgets together since half of the time"
 [ "$seconds" -lt 600 ] || [ "$(resident_mib)" -le $((halfway + halfway / 10)) ] \
     || fail "memory grew from $halfway to $(resident_mib) MiB"
 echo "soak.sh: $(value "s['step']") steps in $seconds s, $halfway MiB halfway and $(resident_mib) MiB at the end"
