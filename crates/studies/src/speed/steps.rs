@@ -5,9 +5,9 @@ use super::performance::{Timing, geometric_mean, median_with_failures, share_sol
 use super::solves::{
     LEAST_REPEATS, LONG_SOLVE_SECS, MOST_SWEEPS, ROUNDING, SolveTimer, TimedSolves,
 };
-use super::variants::{self, ChartedVariant};
-use super::{Bench, ChartSection, listed};
-use crate::chart::{Axis, Chart, Sheet};
+use super::variants::{self, ChartedVariant, Family, end_labels};
+use super::{Bench, ChartSection};
+use crate::chart::{Axis, Chart, Layer, Look, Sheet, points};
 use crate::error::Result;
 use crate::report::ReportTable;
 use crate::runner::{Case, Runner, Threads};
@@ -37,7 +37,7 @@ struct TimedCollection {
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let quick = bench.options.quick;
     let timer = CollectionTimer {
-        variants: variants::told_apart(variants::of_problems(!quick)),
+        variants: variants::of_problems(!quick),
         goals: residuals_asked_for(quick),
     };
     let limit_secs = if quick { 0.25 } else { 3.0 };
@@ -59,7 +59,6 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     let mut variants = variants::of_problems(false);
     let models = variants::models().into_iter();
     variants.extend(models.filter(|one| one.solver.friction_model == FrictionModel::Tresca));
-    let variants = variants::told_apart(variants);
     let timer = CollectionTimer { variants, goals: REPORTED.to_vec() };
     let mut sections = Vec::new();
     for (name, in_a_box, state) in
@@ -165,10 +164,13 @@ impl TimedCollection {
         floors
     }
 
-    /// Residuals that a variant reaches against the median time, ms.
-    fn medians(&self, variant: usize, goals: &[f64]) -> Vec<(f64, f64)> {
-        let point =
-            |&goal: &f64| Some((1e3 * median_with_failures(&self.timings(variant, goal))?, goal));
+    /// Residuals that a family reaches against the median time of its fastest member, ms.
+    fn medians(&self, family: Family, goals: &[f64]) -> Vec<(f64, f64)> {
+        let its = || (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
+        let point = |&goal: &f64| {
+            let times = its().filter_map(|one| median_with_failures(&self.timings(one, goal)));
+            Some((1e3 * times.reduce(f64::min)?, goal))
+        };
         goals.iter().filter_map(point).collect()
     }
 }
@@ -177,30 +179,33 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
     let tightest = goals.iter().copied().fold(1.0, f64::min);
     let mut charts = Vec::new();
     for timed in all {
-        let curves: Vec<Vec<(f64, f64)>> =
-            (0..timed.variants.len()).map(|variant| timed.medians(variant, goals)).collect();
-        let times = || curves.iter().flatten().map(|(time, _)| *time);
+        let curves = Family::ALL.map(|family| (family, timed.medians(family, goals)));
+        let times = || curves.iter().flat_map(|(_, curve)| curve).map(|(time, _)| *time);
         let least = times().fold(f64::INFINITY, f64::min).min(1.0);
         let most = times().fold(0.0, f64::max).max(10.0 * least);
         let mut chart = Chart::new(
             timed.title.clone(),
-            Axis::log("time of a step (ms)", 0.7 * least, 1.5 * most),
-            Axis::log("residual", 0.5 * tightest, 0.2),
+            // Room for the names of curves.
+            Axis::log("time of a step (ms)", 0.7 * least, 8.0 * most),
+            Axis::log("residual", 0.4 * tightest, 0.2),
         );
-        for (number, (variant, curve)) in timed.variants.iter().zip(curves).enumerate() {
-            let shares = listed(all, |timed| {
-                format!("{:.0}", 100.0 * share_solved(&timed.timings(number, 1e-8)))
-            });
-            let name = format!("{}\nto 10⁻⁸: {shares} %", variant.name);
-            chart.layers.extend(variant.marked_curve(name, curve));
+        let mut ends = Vec::new();
+        for (family, curve) in curves {
+            let end = curve.last();
+            ends.extend(end.map(|&end| (family.name().to_owned(), family.colour(), end)));
+            let (name, curve) = (family.name(), points(curve));
+            chart.layers.push(Layer::quiet(name, curve, family.colour(), Look::LineAndDots));
         }
+        chart.layers.extend(end_labels(ends));
         charts.push(chart);
     }
+    let charted = all.first().map_or(&[][..], |timed| &timed.variants);
     let caption = bench.caption(&[
-        "Median time, warm start; a curve ends where half of the steps are solved no further. To 10⁻⁸: share of \
-         steps solved to that residual, panel by panel.",
+        "The fastest member of each family, to each residual: median time, warm start. A curve ends where no member solves \
+         half of the steps any further.",
+        &variants::members(charted),
     ]);
-    Sheet { size: (760 * charts.len() as u32, 760), charts, caption }
+    Sheet { size: (600 * charts.len() as u32, 600), charts, caption }
 }
 
 /// How the steps were timed, and the residual floors of each collection.

@@ -1,18 +1,77 @@
 //! The solver variants that are charted: every method of the registry with its settings.
 
-use crate::chart::{Layer, Look, PALETTE, Rgb, points};
+use crate::chart::{Layer, PALETTE, Rgb};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
-/// After those of the palette.
-const OTHERS: [Rgb; 3] = [(136, 34, 85), (153, 153, 51), (130, 130, 130)];
+/// Methods that do alike, which share a curve on a chart: six tell more than seventeen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Family {
+    /// Row after row.
+    Sweeps,
+    /// By products with the whole problem alone.
+    FirstOrder,
+    /// By factorisations, on Coulomb's law.
+    Newton,
+    /// A convex problem in the place of Coulomb's law.
+    Convex,
+    /// The law of finite range.
+    Range,
+    /// Springs or penalties in place of a problem.
+    Penalties,
+}
+
+impl Family {
+    pub(super) const ALL: [Self; 6] =
+        [Self::Sweeps, Self::FirstOrder, Self::Newton, Self::Convex, Self::Range, Self::Penalties];
+
+    /// What a chart calls it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Sweeps => "sweeps",
+            Self::FirstOrder => "first order",
+            Self::Newton => "Newton",
+            Self::Convex => "convex",
+            Self::Range => "range",
+            Self::Penalties => "penalties",
+        }
+    }
+
+    pub(super) fn colour(self) -> Rgb {
+        let place = Self::ALL.iter().position(|family| *family == self);
+        place.map_or(PALETTE[0], |place| PALETTE[place])
+    }
+}
+
+/// Which of these variants are of which family, for captions.
+pub(super) fn members(variants: &[ChartedVariant]) -> String {
+    let of = |family: Family| {
+        let its = variants.iter().filter(|variant| variant.family() == family);
+        let names: Vec<&str> = its.map(|variant| &*variant.name).collect();
+        (!names.is_empty()).then(|| format!("{}: {}", family.name(), names.join(", ")))
+    };
+    let all: Vec<String> = Family::ALL.into_iter().filter_map(of).collect();
+    format!("{}.", all.join("; "))
+}
+
+/// Least factor between two labels, on a logarithmic axis.
+const APART: f64 = 1.45;
+
+/// Words beside the ends of curves, moved apart where those are close.
+pub(super) fn end_labels(mut ends: Vec<(String, Rgb, (f64, f64))>) -> Vec<Layer> {
+    ends.sort_by(|(.., one), (.., other)| one.1.total_cmp(&other.1));
+    let mut last = 0.0;
+    let label = |(text, colour, (x, y))| {
+        last = f64::max(y, last * APART);
+        Layer::Words { at: (1.18 * x, last), text, colour }
+    };
+    ends.into_iter().map(label).collect()
+}
 
 /// A method with its settings, or a stepper that has none, as it is charted.
 #[derive(Clone, Debug)]
 pub(super) struct ChartedVariant {
     pub name: String,
-    /// Its number on its chart: a colour, and dashes after the colours run out.
-    look: usize,
     pub stepper: Stepper,
     pub solver: SolverSettings,
 }
@@ -22,20 +81,12 @@ fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }
 
-/// The variants of one chart, so that no two look alike.
-pub(super) fn told_apart(mut variants: Vec<ChartedVariant>) -> Vec<ChartedVariant> {
-    for (look, variant) in variants.iter_mut().enumerate() {
-        variant.look = look;
-    }
-    variants
-}
-
 /// Every method of the registry, in its order, and every stepper without one; `auto` is one of the others.
 pub(super) fn all() -> Vec<ChartedVariant> {
     let mut variants = of_problems(false);
     variants.extend(without_method().map(|stepper| {
         let (name, solver) = (stepper.name().to_owned(), SolverSettings::SWEEPS);
-        ChartedVariant { name, look: 0, stepper, solver }
+        ChartedVariant { name, stepper, solver }
     }));
     variants
 }
@@ -77,7 +128,7 @@ fn of_model(method: Method, friction_model: FrictionModel) -> ChartedVariant {
         FrictionModel::Coulomb => method.to_string(),
         _ => format!("{method} {friction_model}"),
     };
-    ChartedVariant { name, look: 0, stepper: Stepper::Moreau, solver }
+    ChartedVariant { name, stepper: Stepper::Moreau, solver }
 }
 
 impl ChartedVariant {
@@ -95,42 +146,52 @@ impl ChartedVariant {
         self.to_residual(f64::MIN_POSITIVE, count)
     }
 
-    pub(super) fn colour(&self) -> Rgb {
-        let colours = || PALETTE.into_iter().chain(OTHERS);
-        colours().nth(self.look % colours().count()).unwrap_or(PALETTE[0])
-    }
-
-    fn is_dashed(&self) -> bool {
-        self.look >= PALETTE.len() + OTHERS.len()
-    }
-
-    pub(super) fn dots(&self, radius: u32) -> Look {
-        if self.is_dashed() { Look::Rings(radius) } else { Look::Dots(radius) }
-    }
-
-    pub(super) fn marked_curve(&self, name: String, places: Vec<(f64, f64)>) -> Vec<Layer> {
-        let (colour, points) = (self.colour(), points(places));
-        if self.is_dashed() {
-            let marks = Layer::quiet(format!("{name} "), points.clone(), colour, Look::Rings(5));
-            return vec![Layer::curve(name, points, colour, Look::Dashes(3)), marks];
+    pub(super) fn family(&self) -> Family {
+        if !self.stepper.uses_method() {
+            return Family::Penalties;
         }
-        vec![Layer::curve(name, points, colour, Look::LineAndDots)]
+        if self.stepper == Stepper::Range {
+            return Family::Range;
+        }
+        if self.solver.friction_model != FrictionModel::Coulomb {
+            return Family::Convex;
+        }
+        match self.solver.method {
+            Method::Newton | Method::InteriorPoint => Family::Newton,
+            Method::Nncg | Method::Apgd | Method::Admm => Family::FirstOrder,
+            Method::Nsgs | Method::NsgsParallel | Method::Jacobi | Method::Auto => Family::Sweeps,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashSet;
-
     use super::*;
 
     #[test]
-    fn no_two_of_a_chart_look_alike() {
-        let with_models = all().into_iter().chain(models()).collect();
-        for variants in [of_problems(true), with_models].map(told_apart) {
-            let looks = variants.iter().map(|variant| (variant.colour(), variant.is_dashed()));
-            let names: Vec<_> = variants.iter().map(|variant| &variant.name).collect();
-            assert_eq!(looks.collect::<HashSet<_>>().len(), variants.len(), "{names:?}");
+    fn every_family_has_members_and_the_names_of_variants_differ() {
+        let mut variants: Vec<_> = all().into_iter().chain(models()).collect();
+        variants.push(ChartedVariant { stepper: Stepper::Range, ..of_method(Method::Newton) });
+        for family in Family::ALL {
+            assert!(variants.iter().any(|variant| variant.family() == family), "{family:?}");
         }
+        variants.pop();
+        let count = variants.len();
+        let mut names: Vec<_> = variants.into_iter().map(|variant| variant.name).collect();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+
+    #[test]
+    fn labels_of_curves_that_end_together_stand_apart() {
+        let of = |family: Family| (family.name().to_owned(), family.colour(), (1.0, 0.01));
+        let ends = Family::ALL.map(of).to_vec();
+        let labels = end_labels(ends);
+        let heights: Vec<f64> = labels
+            .iter()
+            .filter_map(|label| if let Layer::Words { at, .. } = label { Some(at.1) } else { None })
+            .collect();
+        assert!(heights.windows(2).all(|pair| pair[1] >= 1.4 * pair[0]), "{heights:?}");
     }
 }

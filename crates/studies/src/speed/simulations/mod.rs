@@ -13,9 +13,9 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::performance::pareto_front;
-use super::variants::{self, ChartedVariant};
+use super::variants::{self, ChartedVariant, Family, end_labels};
 use super::{Bench, ChartSection, listed};
-use crate::chart::{Axis, Chart, INK, Layer, Look, Rgb, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, points};
 use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
 use crate::number;
@@ -25,7 +25,7 @@ use crate::scene::{NewPile, Scene};
 use crate::sim::{RunEnding, Stepper, Tally};
 use crate::solver::{Method, SolverSettings, StopTest};
 use crate::states::States;
-use crate::statistics::mean;
+use crate::statistics::{Mean, mean};
 use crate::world::ParameterChanges;
 
 /// A step gets no more sweeps: one without a solution must not take for ever.
@@ -167,7 +167,7 @@ fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<Budgeted
         }
         variants.push(variant);
     }
-    (variants::told_apart(variants), budgeted)
+    (variants, budgeted)
 }
 
 /// (Bond, seed) of each pile of 138 grains. Bond numbers are dealt out to the seeds: each is met by several, and each
@@ -331,7 +331,7 @@ struct SimulatedPoint<'a> {
     failed: Option<String>,
     speed: f64,
     /// Mean |slump − reference| at the same Δt, and at the finest.
-    errors: [f64; 2],
+    errors: [Mean; 2],
     /// Share of piles about which it says what the reference at the same Δt says: holds or not.
     verdicts: f64,
 }
@@ -391,7 +391,7 @@ fn summed_up<'a>(
     };
     let error = |time_step_secs| {
         let errors = slumps(time_step_secs).map(|(slump, reference)| (slump - reference).abs());
-        mean(&errors.collect::<Vec<_>>()).mean
+        mean(&errors.collect::<Vec<_>>())
     };
     let agree =
         slumps(time_step_secs).filter(|(slump, right)| (*slump < HOLDS) == (*right < HOLDS));

@@ -3,26 +3,30 @@
 use super::*;
 use crate::report::ReportTable;
 
-/// Draws a point for each variant, budget and Δt: against the same Δt, and against the finest one.
+/// Draws what each family reaches at best for its cost: against the same Δt, and against the finest one.
 pub(super) fn sheet(
     bench: &Bench,
     plan: &SimulationPlan,
     simulated: &[SimulatedPoint],
     references: &References,
 ) -> Sheet {
-    let good = || simulated.iter().filter(|point| point.failed.is_none()).map(|point| point.speed);
-    let slowest = 0.7 * good().fold(f64::INFINITY, f64::min).min(1.0);
-    let fastest = 1.5 * good().fold(0.0, f64::max).max(10.0 * slowest);
-    let finest = format!("Δt = {:e} s", FINEST_SECS);
-    let panels = [("the same Δt", Some(references.floor(plan))), (finest.as_str(), None)];
+    let costs = || simulated.iter().filter(|point| point.failed.is_none()).map(cost);
+    let least = 0.6 * costs().fold(f64::INFINITY, f64::min).min(1.0);
+    // Room for the names of curves.
+    let most = 7.0 * costs().fold(0.0, f64::max).max(10.0 * least);
+    let finest = format!("Against Δt = {:e} s: step and solver", FINEST_SECS);
+    let panels = [
+        ("Against the same Δt: the solver", Some(references.floor(plan))),
+        (finest.as_str(), None),
+    ];
     let charts: Vec<Chart> = panels
         .into_iter()
         .enumerate()
-        .map(|(panel, (against, floor))| {
+        .map(|(panel, (title, floor))| {
             let chart = Chart::new(
-                format!("Error of the slump against {against}"),
-                Axis::log("simulated seconds per second", slowest, fastest),
-                Axis::log("mean error of Δy_G", LEAST_ERROR, 1.0),
+                title,
+                Axis::log("core seconds per simulated second", least, most),
+                Axis::log("mean error of the slump", LEAST_ERROR, 1.0),
             );
             with_errors(chart, plan, simulated, panel, floor)
         })
@@ -31,14 +35,17 @@ pub(super) fn sheet(
     let (piles, grains) = (plan.piles.len(), NewPile::default().grains);
     let caption = bench.caption(&[
         &format!(
-            "A point for each method, effort and Δt (the larger the dot, the larger: {steps}); means over {piles} piles of {grains} grains."
+            "What each family comes to at best for its cost, with 95 % intervals over {piles} piles of {grains} grains, Δt of \
+             {steps} and all budgets. A budget that is too slow or blows up has failed. Dashes: two references differ by so much."
         ),
-        &format!(
-            "References by {}. Slump after {} s. On the lower edge: the reference itself.",
-            REFERENCE, DURATION_SECS
-        ),
+        &variants::members(&plan.variants),
+        &format!("References by {REFERENCE}. Slump after {DURATION_SECS} s."),
     ]);
-    Sheet { size: (1500, 840), charts, caption }
+    Sheet { size: (1200, 640), charts, caption }
+}
+
+fn cost(point: &SimulatedPoint) -> f64 {
+    1.0 / point.speed
 }
 
 fn with_errors(
@@ -50,31 +57,38 @@ fn with_errors(
 ) -> Chart {
     if let Some(floor) = floor {
         let line = points([chart.x.from, chart.x.to].map(|x| (x, floor.max(LEAST_ERROR))));
-        let name = "two references\nfrom each other";
-        chart.layers.push(Layer::curve(name, line, GREY, Look::Dashes(2)));
+        let name = "two references from each other";
+        chart.layers.push(Layer::quiet(name, line, GREY, Look::Dashes(2)));
     }
     // Below the floor no error is better than another.
     let least = floor.unwrap_or(0.0).max(LEAST_ERROR);
-    let good = || simulated.iter().filter(|point| point.failed.is_none());
-    let honest: Vec<_> =
-        good().map(|point| (point.speed, point.errors[panel].max(least))).collect();
-    let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
-    chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
-    for (number, variant) in plan.variants.iter().enumerate() {
-        let is_its = |point: &&SimulatedPoint| point.variant.variant == number;
-        let count = simulated.iter().filter(is_its).count();
-        let name = match count - good().filter(is_its).count() {
-            0 => variant.name.clone(),
-            failed => format!("{}\n{failed} of {count} failed", variant.name),
+    let mut ends = Vec::new();
+    for family in Family::ALL {
+        let is_its =
+            |point: &&SimulatedPoint| plan.variants[point.variant.variant].family() == family;
+        let its: Vec<_> = simulated.iter().filter(is_its).collect();
+        let (good, failed): (Vec<_>, Vec<_>) =
+            its.into_iter().partition(|point| point.failed.is_none());
+        let honest: Vec<(f64, f64)> =
+            good.iter().map(|point| (point.speed, point.errors[panel].mean.max(least))).collect();
+        let front = pareto_front(&honest).into_iter().rev();
+        let front: Vec<Point> = front
+            .map(|index| {
+                let Mean { mean, low, high, .. } = good[index].errors[panel];
+                let inside = |error: f64| error.clamp(LEAST_ERROR, 1.0);
+                let interval = Some((inside(low), inside(high)));
+                Point { x: cost(good[index]), y: inside(mean), interval }
+            })
+            .collect();
+        let (name, colour) = (family.name(), family.colour());
+        let said = match failed.len() {
+            0 => name.to_owned(),
+            count => format!("{name}, {count} failed"),
         };
-        for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
-            let here = good().filter(is_its).filter(|one| one.time_step_secs == *time_step_secs);
-            let places = points(here.map(|one| (one.speed, one.errors[panel].max(LEAST_ERROR))));
-            let make = if size == 0 { Layer::curve } else { Layer::quiet };
-            let dots = variant.dots(4 + 2 * size as u32);
-            chart.layers.push(make(name.clone(), places, variant.colour(), dots));
-        }
+        ends.extend(front.last().map(|end| (said, colour, (end.x, end.y))));
+        chart.layers.push(Layer::quiet(name, front, colour, Look::LineAndDots));
     }
+    chart.layers.extend(end_labels(ends));
     chart
 }
 
@@ -103,7 +117,8 @@ pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> Repo
         let mut row = vec![name.clone(), format!("{:e}", point.time_step_secs)];
         row.push(point.variant.budget.clone());
         row.push(point.failed.clone().unwrap_or_default());
-        let numbers = [point.speed, point.errors[0], point.errors[1], point.verdicts];
+        let [same, finest] = point.errors.map(|error| error.mean);
+        let numbers = [point.speed, same, finest, point.verdicts];
         let mut numbers = numbers.map(|x| format!("{x:.4}")).to_vec();
         numbers.push(format!("{overlap:.2e}"));
         numbers.extend(
