@@ -173,6 +173,9 @@ for _ in 1 2 3 4; do
     sleep 20
     [ "$(value "s['other_piles'] >= 3")" = True ] && break
 done
+# What the mouse points at would tell of itself.
+xdotool mousemove 700 20
+sleep 1
 import -window root "$shots/window-tour-end.png"
 xdotool key r
 wait_for "the reset" "s['step'] == 0"

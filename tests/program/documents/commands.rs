@@ -1,0 +1,72 @@
+//! Commands of the documents. A block that begins with ```sh alone has quick ones: all of them run, in a folder of the page, from
+//! the first to the last. In one that says more, such as ```sh slow, the command line is held to what the program takes.
+
+use std::time::Instant;
+
+use super::{blocks, pages, root};
+use crate::program::*;
+
+/// All quick commands together.
+const MOST_TIME: Duration = Duration::from_secs(60);
+
+/// The words of the program's command in a line, without its name; none where it calls others.
+fn command_in(line: &str) -> Option<Vec<String>> {
+    let words = shlex::split(line).unwrap_or_else(|| panic!("{line}"));
+    let end = words.iter().position(|word| matches!(word.as_str(), "|" | ";" | ">" | "&&"));
+    let mut words = words[..end.unwrap_or(words.len())].to_vec();
+    let program = words.iter().position(|word| word == "slump").filter(|at| *at == 0);
+    let by_cargo = words.starts_with(&["cargo".into(), "run".into()]);
+    let by_cargo = by_cargo.then(|| words.iter().position(|word| word == "--")).flatten();
+    let at = program.or(by_cargo)?;
+    Some(words.split_off(at + 1))
+}
+
+/// The commands of a block, lines that end in a backslash joined.
+fn lines_of(lines: &[&str]) -> Vec<String> {
+    let text = lines.join("\n").replace("\\\n", " ");
+    text.lines().map(str::to_owned).filter(|line| !line.trim().is_empty()).collect()
+}
+
+#[test]
+fn commands_of_documents_are_taken() {
+    let mut refused = Vec::new();
+    let mut taken = 0;
+    for page in pages() {
+        let text = read(&page);
+        let shell = blocks(&text).into_iter().filter(|(info, _)| info.starts_with("sh"));
+        for line in shell.flat_map(|(_, lines)| lines_of(&lines)) {
+            let Some(words) = command_in(&line) else { continue };
+            taken += 1;
+            let words = std::iter::once("slump".to_owned()).chain(words);
+            if let Err(error) = slump::cli::command().try_get_matches_from(words)
+                && error.use_stderr()
+            {
+                refused.push(format!("{}: {line}: {error}", page.display()));
+            }
+        }
+    }
+    assert!(refused.is_empty(), "{}", refused.join("\n"));
+    assert!(taken > 50, "{taken} commands");
+}
+
+#[test]
+fn quick_commands_of_documents_run() {
+    let begun = Instant::now();
+    let mut ran = 0;
+    for page in pages() {
+        let text = read(&page);
+        let folder = folder();
+        std::os::unix::fs::symlink(root().join("assets"), folder.path().join("assets")).expect("a link");
+        let quick = blocks(&text).into_iter().filter(|(info, _)| *info == "sh");
+        for line in quick.flat_map(|(_, lines)| lines_of(&lines)) {
+            let Some(words) = command_in(&line) else {
+                panic!("{}: {line}: no command of the program in a block that is run", page.display())
+            };
+            let output = run(slump("").args(&words).current_dir(folder.path()));
+            assert!(output.status.success(), "{}: {line}: {}", page.display(), said(&output));
+            ran += 1;
+        }
+    }
+    assert!(ran > 10, "{ran} commands");
+    assert!(begun.elapsed() < MOST_TIME, "{ran} quick commands took {:?}", begun.elapsed());
+}
