@@ -16,8 +16,8 @@ const MOST_GRAINS: usize = 20_000;
 /// Ends of the speed slider, simulated time per time on the wall.
 const SPEEDS: [f64; 2] = [0.01, 10.0];
 
-/// Piles of that many grains cost enough to say so, and what was measured of just as many (`RESULTS.md`, piles made
-/// quickly), s of one core.
+/// Piles of that many grains cost enough to say so, and what was measured of just as many (`docs/runs.md`, new piles),
+/// s of one core.
 const LARGE: usize = 2_000;
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;

@@ -1,9 +1,9 @@
-//! Commands of the documents. A block that begins with ```sh alone has quick ones: all of them run, in a folder of the page, from
-//! the first to the last. In one that says more, such as ```sh slow, the command line is held to what the program takes.
+//! Commands of the documents: each is one that the program takes. A block of the book that begins with ```sh alone has quick
+//! ones, and all of them run, in a folder of the page, from the first to the last; one of others says ```sh slow.
 
 use std::time::Instant;
 
-use super::{blocks, pages, root};
+use super::{blocks, book, pages, root};
 use crate::program::*;
 
 /// All quick commands together.
@@ -53,14 +53,18 @@ fn commands_of_documents_are_taken() {
 fn quick_commands_of_documents_run() {
     let begun = Instant::now();
     let mut ran = 0;
-    for page in pages() {
+    for page in book() {
         let text = read(&page);
         let folder = folder();
-        std::os::unix::fs::symlink(root().join("assets"), folder.path().join("assets")).expect("a link");
+        std::os::unix::fs::symlink(root().join("assets"), folder.path().join("assets"))
+            .expect("a link");
         let quick = blocks(&text).into_iter().filter(|(info, _)| *info == "sh");
         for line in quick.flat_map(|(_, lines)| lines_of(&lines)) {
             let Some(words) = command_in(&line) else {
-                panic!("{}: {line}: no command of the program in a block that is run", page.display())
+                panic!(
+                    "{}: {line}: no command of the program in a block that is run",
+                    page.display()
+                )
             };
             let output = run(slump("").args(&words).current_dir(folder.path()));
             assert!(output.status.success(), "{}: {line}: {}", page.display(), said(&output));

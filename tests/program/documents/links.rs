@@ -75,8 +75,22 @@ fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
 }
 
 #[test]
+fn every_picture_is_shown_and_says_its_result() {
+    let texts: Vec<String> = pages().iter().map(read).collect();
+    for entry in std::fs::read_dir(root().join("screenshots")).expect("pictures") {
+        let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
+        let shown = texts.iter().flat_map(|text| links(text)).filter(|(_, to)| to.ends_with(&name));
+        let said: Vec<&str> = shown.map(|(said, _)| said).collect();
+        assert!(!said.is_empty(), "no page shows {name}");
+        assert!(said.iter().all(|said| said.split(' ').count() > 10), "{name}: {said:?}");
+    }
+}
+
+#[test]
 fn a_number_is_held_to_the_digits_that_it_shows() {
-    for (text, value) in [("0.24", 0.2417), ("−.25", -0.2543), ("+0.3", 0.264), ("49", 49.0), ("1.3e-3", 1.26e-3)] {
+    for (text, value) in
+        [("0.24", 0.2417), ("−.25", -0.2543), ("+0.3", 0.264), ("49", 49.0), ("1.3e-3", 1.26e-3)]
+    {
         assert!(is_printed(text, &Value::from(value)), "{text}");
     }
     for (text, value) in [("0.25", 0.2417), ("0.25", -0.2543), ("much", 0.3), ("", 0.0)] {

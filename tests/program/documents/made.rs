@@ -73,8 +73,13 @@ fn option_row(arg: &Arg) -> String {
     let aliases = arg.get_visible_aliases().unwrap_or_default();
     let aliases: String = aliases.iter().map(|it| format!(", `--{it}`")).collect();
     let mut help = cell(&arg.get_help().map(ToString::to_string).unwrap_or_default());
-    for word in arg.get_possible_values().iter().filter(|word| word.get_name() != "true" && word.get_name() != "false") {
-        let about = word.get_help().map(|it| format!(": {}", cell(&it.to_string()))).unwrap_or_default();
+    for word in arg
+        .get_possible_values()
+        .iter()
+        .filter(|word| word.get_name() != "true" && word.get_name() != "false")
+    {
+        let about =
+            word.get_help().map(|it| format!(": {}", cell(&it.to_string()))).unwrap_or_default();
         let _ = write!(help, "<br>`{}`{about}", word.get_name());
     }
     format!("| `{}`{aliases} | {help} |\n", cell(&name))
@@ -97,7 +102,8 @@ fn tables_of(command: &clap::Command, known: &[String]) -> String {
         let title = heading.unwrap_or("option");
         let _ = write!(text, "\n| {title} | |\n|---|---|\n");
         let args = command.get_arguments().filter(is_told);
-        args.filter(|arg| arg.get_help_heading() == heading).for_each(|arg| text.push_str(&option_row(arg)));
+        args.filter(|arg| arg.get_help_heading() == heading)
+            .for_each(|arg| text.push_str(&option_row(arg)));
     }
     text
 }
@@ -105,12 +111,19 @@ fn tables_of(command: &clap::Command, known: &[String]) -> String {
 fn commands() -> String {
     let root = slump::cli::command();
     let mut text = format!("## slump\n{}", tables_of(&root, &[]));
-    let known: Vec<String> =
-        root.get_arguments().filter(|arg| arg.get_help_heading().is_some()).map(|arg| arg.get_id().to_string()).collect();
+    let known: Vec<String> = root
+        .get_arguments()
+        .filter(|arg| arg.get_help_heading().is_some())
+        .map(|arg| arg.get_id().to_string())
+        .collect();
     let mut add = |name: &str, command: &clap::Command| {
         let about = command.get_about().map(ToString::to_string).unwrap_or_default();
         let takes_scene = command.get_arguments().any(|arg| arg.get_id() == "scene");
-        let also = if takes_scene { " It takes the options of scene, physics and solver above, too." } else { "" };
+        let also = if takes_scene {
+            " It takes the options of scene, physics and solver above, too."
+        } else {
+            ""
+        };
         let _ = write!(text, "\n## slump {name}\n\n{about}.{also}\n");
         let known = if takes_scene { &known[..] } else { &[] };
         text.push_str(&tables_of(command, known));
@@ -149,7 +162,9 @@ fn place_in_scene_file(name: &str, kind: Kind) -> (String, String) {
                 }
                 continue;
             };
-            if let Some((field, _)) = fields.iter().find(|(field, value)| before[group].get(field) != Some(value)) {
+            if let Some((field, _)) =
+                fields.iter().find(|(field, value)| before[group].get(field) != Some(value))
+            {
                 return (format!("[{group}]"), field.clone());
             }
         }
@@ -158,12 +173,14 @@ fn place_in_scene_file(name: &str, kind: Kind) -> (String, String) {
 }
 
 fn settings() -> String {
-    let mut text = "\n| table | name | option | default | what it is |\n|---|---|---|---|---|\n".to_owned();
+    let mut text =
+        "\n| table | name | option | default | what it is |\n|---|---|---|---|---|\n".to_owned();
     for about in Settings::about() {
         let (table, field) = place_in_scene_file(about.name, about.kind);
         let default = Settings::default().get(about.name).expect("a setting");
         let help = cell(about.help);
-        let _ = writeln!(text, "| `{table}` | `{field}` | `--{}` | {default} | {help} |", about.name);
+        let _ =
+            writeln!(text, "| `{table}` | `{field}` | `--{}` | {default} | {help} |", about.name);
     }
     text.replace("| `` |", "| |")
 }
@@ -186,24 +203,42 @@ fn columns() -> String {
 }
 
 /// The variants that the page has room for.
-const VARIANTS: [&str; 11] =
-    ["default", "nsgs", "newton", "nncg", "admm", "tgs-soft", "avbd", "dem", "associated", "desaxce", "robust"];
+const VARIANTS: [&str; 11] = [
+    "default",
+    "nsgs",
+    "newton",
+    "nncg",
+    "admm",
+    "tgs-soft",
+    "avbd",
+    "dem",
+    "associated",
+    "desaxce",
+    "robust",
+];
 
 fn verdicts() -> String {
     let table = read(root().join("tests/physics/stability/table.csv"));
-    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let rows: Vec<Vec<&str>> =
+        table.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut scenes: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     scenes.dedup();
-    let mut text = format!("\n| challenge | {} |\n|---|{}\n", VARIANTS.join(" | "), "---|".repeat(VARIANTS.len()));
+    let mut text = format!(
+        "\n| challenge | {} |\n|---|{}\n",
+        VARIANTS.join(" | "),
+        "---|".repeat(VARIANTS.len())
+    );
     for scene in scenes {
         let _ = write!(text, "| *{scene}* |");
         for variant in VARIANTS {
             let levels = rows.iter().filter(|row| row[0] == scene && row[1] == variant);
-            let verdicts: String = levels.map(|row| match row[3] {
-                "holds" => '●',
-                "degrades" => '◐',
-                _ => '○',
-            }).collect();
+            let verdicts: String = levels
+                .map(|row| match row[3] {
+                    "holds" => '●',
+                    "degrades" => '◐',
+                    _ => '○',
+                })
+                .collect();
             let _ = write!(text, " {verdicts} |");
         }
         text.push('\n');

@@ -20,7 +20,8 @@ fn root() -> &'static Path {
 fn book() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join("docs")).expect("the book");
     let paths = entries.map(|entry| entry.expect("an entry").path());
-    let mut pages: Vec<_> = paths.filter(|path| path.extension().is_some_and(|it| it == "md")).collect();
+    let mut pages: Vec<_> =
+        paths.filter(|path| path.extension().is_some_and(|it| it == "md")).collect();
     pages.sort();
     pages
 }
@@ -74,5 +75,21 @@ fn pages_are_short_and_in_the_summary() {
     for (name, most) in [("ARCHITECTURE.md", 1_500), ("CONTRIBUTING.md", 3_000)] {
         let words = read(root().join(name)).split_whitespace().count();
         assert!(words <= most, "{name} has {words} words");
+    }
+}
+
+#[test]
+fn what_is_tried_of_a_commit_are_the_commands_of_the_readme() {
+    let tried = read(root().join(".ci/run"));
+    let text = read(root().join("README.md"));
+    let shell = blocks(&text).into_iter().filter(|(info, _)| info.starts_with("sh"));
+    let commands: Vec<&str> = shell
+        .flat_map(|(_, lines)| lines)
+        .map(|it| it.split(" #").next().unwrap_or(it).trim())
+        .collect();
+    for command in ["cargo run --release -- --headless --frames out/", "cargo test --release"] {
+        assert!(commands.contains(&command), "the README has {commands:?}");
+        let command = command.trim_end_matches(" out/");
+        assert!(tried.lines().any(|line| line.contains(command)), "{command} is not tried");
     }
 }
