@@ -4,19 +4,15 @@
 use std::fmt::Write as _;
 
 use clap::Arg;
+use serde_json::Value;
 use slump::setting::Kind;
 use slump::sim::{AlarmKind, Settings};
 
 use super::{book, root};
 use crate::program::{folder, json, read, slump, succeed, write};
 
-const PARTS: [(&str, fn() -> String); 5] = [
-    ("commands", commands),
-    ("settings", settings),
-    ("columns", columns),
-    ("verdicts", verdicts),
-    ("alarms", alarms),
-];
+const PARTS: [(&str, fn() -> String); 4] =
+    [("commands", commands), ("settings", settings), ("columns", columns), ("verdicts", verdicts)];
 const END: &str = "<!-- end -->";
 
 fn begin(name: &str) -> String {
@@ -63,6 +59,9 @@ fn cell(text: &str) -> String {
 fn option_row(arg: &Arg) -> String {
     let values = arg.get_value_names().unwrap_or_default();
     let value = match (values.first(), arg.get_action().takes_values()) {
+        (Some(name), true) if arg.get_num_args().is_some_and(|it| it.min_values() == 0) => {
+            format!(" [{name}]")
+        }
         (Some(name), true) => format!(" {name}"),
         _ => String::new(),
     };
@@ -73,6 +72,10 @@ fn option_row(arg: &Arg) -> String {
     let aliases = arg.get_visible_aliases().unwrap_or_default();
     let aliases: String = aliases.iter().map(|it| format!(", `--{it}`")).collect();
     let mut help = cell(&arg.get_help().map(ToString::to_string).unwrap_or_default());
+    let default: Vec<_> = arg.get_default_values().iter().map(|it| it.to_string_lossy()).collect();
+    if arg.get_action().takes_values() && !default.is_empty() {
+        let _ = write!(help, " [default: {}]", default.join(", "));
+    }
     for word in arg
         .get_possible_values()
         .iter()
@@ -89,7 +92,9 @@ fn option_row(arg: &Arg) -> String {
 fn tables_of(command: &clap::Command, known: &[String]) -> String {
     let is_told = |arg: &&Arg| {
         let name = arg.get_id().as_str();
-        !["help", "version"].contains(&name) && !known.iter().any(|it| it == name)
+        !["help", "version"].contains(&name)
+            && !arg.is_hide_set()
+            && !known.iter().any(|it| it == name)
     };
     let mut headings: Vec<Option<&str>> = Vec::new();
     for arg in command.get_arguments().filter(is_told) {
@@ -140,32 +145,42 @@ fn commands() -> String {
     text
 }
 
+/// The tables of a scene file that have settings, and what is in them.
+fn tables(settings: &Settings) -> [(&'static str, Value); 4] {
+    let Settings { stepper, parameters, solver, remedies } = settings;
+    let stepper = serde_json::json!({ "stepper": stepper });
+    let json = [
+        serde_json::to_value(parameters),
+        serde_json::to_value(solver),
+        serde_json::to_value(remedies),
+    ];
+    let [parameters, solver, remedies] = json.map(|table| table.expect("JSON"));
+    [
+        ("", stepper),
+        ("`[parameters]`", parameters),
+        ("`[solver]`", solver),
+        ("`[remedies]`", remedies),
+    ]
+}
+
 /// Where a scene file has a setting: its table and its name there.
-fn place_in_scene_file(name: &str, kind: Kind) -> (String, String) {
+fn place_in_scene_file(name: &str, kind: Kind) -> (&'static str, String) {
     use slump::setting::Value as Setting;
-    let default = Settings::default();
     let others = match kind {
         Kind::Number => vec![Setting::Number(0.123)],
         Kind::Count => vec![Setting::Count(77)],
         Kind::Switch => vec![Setting::Switch(true), Setting::Switch(false)],
         Kind::Word(words) => words.iter().map(|word| Setting::Word(word.name)).collect(),
     };
-    let before = serde_json::to_value(default).expect("JSON");
+    let before = tables(&Settings::default());
     for other in others {
-        let mut changed = default;
+        let mut changed = Settings::default();
         assert!(changed.set(name, other), "{name}");
-        let after = serde_json::to_value(changed).expect("JSON");
-        for (group, value) in after.as_object().expect("a table") {
-            let Some(fields) = value.as_object() else {
-                if before[group] != *value {
-                    return (String::new(), group.clone());
-                }
-                continue;
-            };
-            if let Some((field, _)) =
-                fields.iter().find(|(field, value)| before[group].get(field) != Some(value))
+        for ((table, after), (_, before)) in tables(&changed).into_iter().zip(&before) {
+            let mut fields = after.as_object().expect("a table").iter();
+            if let Some((field, _)) = fields.find(|(field, value)| before.get(field) != Some(value))
             {
-                return (format!("[{group}]"), field.clone());
+                return (table, field.clone());
             }
         }
     }
@@ -179,10 +194,9 @@ fn settings() -> String {
         let (table, field) = place_in_scene_file(about.name, about.kind);
         let default = Settings::default().get(about.name).expect("a setting");
         let help = cell(about.help);
-        let _ =
-            writeln!(text, "| `{table}` | `{field}` | `--{}` | {default} | {help} |", about.name);
+        let _ = writeln!(text, "| {table} | `{field}` | `--{}` | {default} | {help} |", about.name);
     }
-    text.replace("| `` |", "| |")
+    text
 }
 
 /// The columns of all tables, as a recording describes them.
@@ -228,10 +242,10 @@ fn verdicts() -> String {
         VARIANTS.join(" | "),
         "---|".repeat(VARIANTS.len())
     );
-    for scene in scenes {
+    for scene in &scenes {
         let _ = write!(text, "| *{scene}* |");
         for variant in VARIANTS {
-            let levels = rows.iter().filter(|row| row[0] == scene && row[1] == variant);
+            let levels = rows.iter().filter(|row| row[0] == *scene && row[1] == variant);
             let verdicts: String = levels
                 .map(|row| match row[3] {
                     "holds" => '●',
@@ -243,13 +257,22 @@ fn verdicts() -> String {
         }
         text.push('\n');
     }
+    let fails = |scene: &&&str| {
+        rows.iter().any(|row| row[0] == **scene && row[1] == "default" && row[3] != "holds")
+    };
+    let (all, failed) = (scenes.len(), scenes.iter().filter(fails).count());
+    let _ = writeln!(
+        text,
+        "\nThe default holds at every level of {} of {all} challenges.",
+        all - failed
+    );
     text
 }
 
-fn alarms() -> String {
-    let mut text = "\n| alarm | what is so |\n|---|---|\n".to_owned();
+#[test]
+fn every_alarm_is_explained() {
+    let page = read(root().join("docs/warnings.md"));
     for alarm in AlarmKind::ALL {
-        let _ = writeln!(text, "| `{}` | {} |", alarm.name(), alarm.hint());
+        assert!(page.contains(&format!("\n| `{}` |", alarm.name())), "{alarm} has no row");
     }
-    text
 }
