@@ -11,7 +11,10 @@ use slump::sim::{AlarmKind, Settings};
 use super::{book, root};
 use crate::program::{folder, json, read, slump, succeed, write};
 
-const PARTS: [(&str, fn() -> String); 4] =
+/// A part's name, and what makes it.
+type Part = (&'static str, fn() -> String);
+
+const PARTS: [Part; 4] =
     [("commands", commands), ("settings", settings), ("columns", columns), ("verdicts", verdicts)];
 const END: &str = "<!-- end -->";
 
