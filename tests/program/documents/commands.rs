@@ -3,6 +3,8 @@
 
 use std::time::Instant;
 
+use slump::world::{GravityTurn, Motion, Periodic};
+
 use super::{blocks, book, pages, root};
 use crate::program::*;
 
@@ -47,6 +49,43 @@ fn commands_of_documents_are_taken() {
     }
     assert!(refused.is_empty(), "{}", refused.join("\n"));
     assert!(taken > 50, "{taken} commands");
+}
+
+/// What a page shows of a scene file.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PartOfScene {
+    #[serde(rename = "motions")]
+    _motions: Option<Vec<Motion>>,
+    #[serde(rename = "gravity_turn")]
+    _gravity_turn: Option<GravityTurn>,
+    #[serde(rename = "periodic")]
+    _periodic: Option<Periodic>,
+}
+
+#[test]
+fn files_of_the_book_are_studies_scenes_or_parts_of_them() {
+    let folder = folder();
+    let file = folder.path().join("file.toml");
+    let mut seen = 0;
+    for page in book() {
+        let text = read(&page);
+        for (_, lines) in blocks(&text).into_iter().filter(|(info, _)| *info == "toml") {
+            let text = lines.join("\n");
+            let is = |table: &str| lines.contains(&table);
+            write(&file, &text);
+            if is("[vary]") {
+                succeed(slump("sweep count").arg(&file));
+            } else if is("[physics]") {
+                succeed(slump("scene --scene").arg(&file));
+            } else if !is("[dependencies]") {
+                let part = toml::from_str::<PartOfScene>(&text);
+                assert!(part.is_ok(), "{}: {:?}: {text}", page.display(), part.err());
+            }
+            seen += 1;
+        }
+    }
+    assert!(seen > 5, "{seen} files");
 }
 
 #[test]
