@@ -6,7 +6,7 @@
 #
 #   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
 #
-# screenshots/window.png is its window-tour-end.png.
+# screenshots/window.png is its window-lesson-end.png.
 #
 # Needs a release build (cargo build --release), and of Debian: xvfb xdotool imagemagick python3,
 # mesa-vulkan-drivers libvulkan1 (or libegl1 libgl1-mesa-dri), and the X11 client libraries that
@@ -42,8 +42,7 @@ xdotool mouseup 1
 wait_for "the time step" "5e-3 <= s['parameters']['time_step_secs'] <= 1e-2"
 dragged=$(value "s['parameters']['time_step_secs']")
 
-# Release; the solver steps with what was dragged.
-xdotool mousemove $(at release 0.5) click 1
+# Let go, the pile starts by itself, with what was dragged.
 wait_for "three steps" "s['step'] >= 3 and abs(s['time_secs'] / s['step'] - $dragged) < 1e-9"
 import -window root "$shots/window-released.png"
 
@@ -55,10 +54,8 @@ xdotool key Right
 wait_for "one step" "s['step'] == $step + 1"
 
 # What was computed goes to files: the last moment, and all of them.
-for section in physics run data; do
-    xdotool mousemove $(at $section 0.3) click 1
-    sleep 1
-done
+xdotool mousemove $(at save 0.5) click 1
+sleep 1
 at_secs=$(value "'%.4f' % s['time_secs']")
 xdotool mousemove $(at "Save state" 0.5) click 1
 wait_for "the state" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*-${at_secs}s.slump') != []"
@@ -73,16 +70,8 @@ sleep 1
 import -window root "$shots/window-data.png"
 "$program" --headless --restart "$saved" --duration "$(python3 -c "print($at_secs + 0.1)")" --save "$work/later.slump" > /dev/null 2> "$work/log" \
     || fail "the state that was saved does not go on"
-for section in data run physics; do
-    xdotool mousemove $(at $section 0.3) click 1
-    sleep 1
-done
 
 # The record as a video.
-for section in physics run see; do
-    xdotool mousemove $(at $section 0.3) click 1
-    sleep 1
-done
 xdotool mousemove $(at "Save video" 0.5) click 1
 wait_for "the video" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*.mp4') != []"
 import -window root "$shots/window-video.png"
@@ -90,10 +79,8 @@ head -c 64 "$work"/out/slump-pile-*.mp4 | grep -q ftypisom || fail "the video is
 xdotool mousemove $(at "Save GIF" 0.5) click 1
 wait_for "the animation" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*.gif') != []"
 head -c 6 "$work"/out/slump-pile-*.gif | grep -q GIF89a || fail "the animation is none"
-for section in see run physics; do
-    xdotool mousemove $(at $section 0.3) click 1
-    sleep 1
-done
+xdotool mousemove $(at save 0.5) click 1
+sleep 1
 
 # With Shift, a click puts a grain above the pile; another takes it out.
 grains=$(value "s['grains']")
@@ -126,8 +113,14 @@ wait_for "a step after the device was lost" "s['step'] == 1 and s['devices'] == 
 import -window root "$shots/window-recovered.png"
 
 # Idle costs nothing: less than a tenth of a second of processor time in two. Other piles are no idleness.
-xdotool mousemove $(at "other piles" 0.5) click 1
+xdotool mousemove $(at more 0.5) click 1
+sleep 1
+xdotool mousemove $(at Compare 0.5) click 1
+sleep 1
+xdotool mousemove $(at "other piles" 0.1) click 1
 wait_for "the end of other piles" "s['other_threads'] == 0"
+xdotool mousemove $(at more 0.5) click 1
+sleep 1
 xdotool mousemove $(at "scene" 0.5)
 sleep 1
 ticks() { awk '{ print $14 + $15 }' "/proc/$window/stat"; }
@@ -153,20 +146,26 @@ window=$!
 wait_for "the pile" "s['scene'] == 'pile'"
 wait_for "the layout of the last time" "abs(s['controls']['scene'][3] - $without_plots) < 2"
 
-# Nobody has asked for a scene: the tour. The plots again, release, and the effect within ten seconds of a
-# machine that does nothing else.
-wait_for "the tour" "s['station'] == 1 and s['worlds'] == 2"
+# Nobody has asked for a scene: the first lesson. The plots and other piles again, release, and the effect within ten
+# seconds of a machine that does nothing else.
+wait_for "the lesson" "s['lesson'] == 1 and s['worlds'] == 2"
 xdotool mousemove $(at "Plots" 0.5) click 1
-wait_for "the plots" "'other piles' in s['controls']"
 sleep 0.5
-xdotool mousemove $(at "other piles" 0.5) click 1
+xdotool mousemove $(at more 0.5) click 1
+sleep 1
+xdotool mousemove $(at Compare 0.5) click 1
+sleep 1
+xdotool mousemove $(at "other piles" 0.1) click 1
+wait_for "other piles" "s['other_threads'] > 0"
+xdotool mousemove $(at more 0.5) click 1
+sleep 1
 xdotool search --name Slump windowfocus
 xdotool mousemove $(at "scene" 0.5)
 sleep 1
-import -window root "$shots/window-tour-start.png"
+import -window root "$shots/window-lesson-start.png"
 xdotool key space
-wait_for "the end of the first station" "not s['playing'] and s['time_secs'] > 0.99"
-[ "$(value "s['slump'] > 0.3")" = True ] || fail "the first pile of the tour stands"
+wait_for "the end of the first lesson" "not s['playing'] and s['time_secs'] > 0.99"
+[ "$(value "s['slump'] > 0.3")" = True ] || fail "the first pile of the lesson stands"
 for _ in 1 2 3 4; do
     # A machine that has other things to do comes to them late; what stands still for long is not computed for.
     xdotool key Left
@@ -176,18 +175,18 @@ done
 # What the mouse points at would tell of itself.
 xdotool mousemove 700 20
 sleep 1
-import -window root "$shots/window-tour-end.png"
+import -window root "$shots/window-lesson-end.png"
 xdotool key r
 wait_for "the reset" "s['step'] == 0"
 xdotool key Right
 sleep 1
 import -window root "$shots/window-ghost.png"
-for station in 2 3; do
-    xdotool mousemove $(at "next station" 0.5) click 1
-    wait_for "station $station" "s['station'] == $station and s['step'] == 0 and not s['playing']"
+for lesson in 2 3; do
+    xdotool mousemove $(at "next lesson" 0.5) click 1
+    wait_for "lesson $lesson" "s['lesson'] == $lesson and s['step'] == 0 and not s['playing']"
     xdotool key space
-    wait_for "the end of station $station" "not s['playing'] and s['time_secs'] > 0.9"
-    import -window root "$shots/window-tour-$station.png"
+    wait_for "the end of lesson $lesson" "not s['playing'] and s['time_secs'] > 0.9"
+    import -window root "$shots/window-lesson-$lesson.png"
 done
 
 # What was chosen outlives the window that is killed.
@@ -197,9 +196,9 @@ wait "$window" 2> /dev/null || true
 rm -f "$state"
 "$program" --export-state "$state" > "$work/log" 2>&1 &
 window=$!
-wait_for "the station of the time before" "s['station'] == 3 and s['worlds'] == 2"
-xdotool mousemove $(at "leave tour" 0.5) click 1
-wait_for "the end of the tour" "s['station'] == 0"
+wait_for "the lesson of the time before" "s['lesson'] == 3 and s['worlds'] == 3"
+xdotool mousemove $(at "leave lessons" 0.5) click 1
+wait_for "the end of the lessons" "s['lesson'] == 0"
 kill "$window"
 wait "$window" 2> /dev/null || true
 rm -f "$state"
@@ -207,7 +206,7 @@ rm -f "$state"
 # A session opens at its moment, with its record.
 "$program" --session "$session" --export-state "$state" > "$work/log" 2>&1 &
 window=$!
-wait_for "the session's moment" "s['step'] == $session_step and s['station'] == 0"
+wait_for "the session's moment" "s['step'] == $session_step and s['lesson'] == 0"
 import -window root "$shots/window-session.png"
 xdotool search --name Slump windowfocus
 xdotool key Left

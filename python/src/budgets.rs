@@ -36,7 +36,7 @@ pub(crate) fn _budget(
     };
     let mut interrupted = None;
     let made = py.detach(|| {
-        made_budget(&options, &folder, |_| {
+        made_budget(&options, &folder, &folder.join("states"), |_| {
             // Ctrl-C is heard between two stages.
             match Python::attach(|py| py.check_signals()) {
                 Ok(()) => ControlFlow::Continue(()),

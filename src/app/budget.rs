@@ -114,26 +114,22 @@ const WEAK: f64 = 50.0;
 pub(super) fn what_to_try(settings: &Settings) -> &'static str {
     let parameters = &settings.parameters;
     if parameters.bond == 0.0 {
-        return "At Bond 0 nothing sticks, and Δt is next to nothing to the pile: set a Bond, release, and see.";
+        return "At Bond 0 nothing sticks, and Δt is next to nothing to the pile: drag Bond and see.";
     }
     match settings.stepper {
         Stepper::Moreau if parameters.bond <= WEAK => {
-            "A larger Δt makes these grains stick better: set Δt and Bond, release, and see whether the pile holds."
+            "A larger Δt makes these grains stick better: drag it and see."
         }
         Stepper::Moreau if parameters.cone == FrictionCone::Shifted => {
-            "So strong a pile hardly gains from a larger Δt; where steps are left unsolved, as in the paper, it even loses."
+            "So strong a pile hardly gains from a larger Δt; with steps left unsolved it even loses."
         }
         Stepper::Moreau => {
-            "In this cone a larger Δt makes strong piles stick better, too: set Δt, release, and see."
+            "In this cone a larger Δt makes strong piles stick better, too: drag it and see."
         }
-        Stepper::Range => {
-            "Under this law Bond means the same at every Δt: set both, release, and see whether it does."
-        }
-        Stepper::Avbd => {
-            "Here a step gets as far as its iterations take it: set Δt, release, and see what it leaves undone."
-        }
+        Stepper::Range => "Under this law Bond means the same at every Δt: drag both and see.",
+        Stepper::Avbd => "Here a step gets as far as its iterations take it: drag Δt and see.",
         Stepper::TgsSoft | Stepper::Dem => {
-            "Here cohesion is a force like any other, whatever Δt: set Bond, release, and see whether the pile holds."
+            "Here cohesion is a force like any other, whatever Δt: drag Bond and see."
         }
     }
 }

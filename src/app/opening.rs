@@ -10,16 +10,15 @@ use glam::DVec2;
 
 use super::budget;
 use super::export::STATE_ENDING;
+use super::lessons::Lesson;
 use super::session::{Arrangement, SESSION_ENDING, open_session};
 use super::sharing::RunLink;
 use super::state::AppState;
-use super::tour::{self, Station};
 use crate::config::{Config, SavedState, SceneSource};
 use crate::error::Result;
 use crate::live::{Command, LiveStart, LoadingProgress, Preview, RunHistory, WorldHistory};
 use crate::scene::{Scene, Settling};
 use crate::sim::{GrainView, Simulation, Snapshot, Tally};
-use crate::solver::SolverSettings;
 use crate::world::{Boundary, Disc, Gravity};
 
 /// What a run began with.
@@ -71,7 +70,7 @@ type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
 impl AppState {
     /// Opens a scene.
     pub fn load(&mut self, config: Config) {
-        self.leave_tour();
+        self.leave_lessons();
         self.config = config.clone();
         self.open(move |tell| {
             let mut scene = settled(&config, tell)?;
@@ -80,16 +79,12 @@ impl AppState {
         });
     }
 
-    /// Opens a station of the tour, with its worlds side by side.
-    pub(super) fn load_station(&mut self, station: &'static Station) {
+    /// Opens a lesson, with its worlds side by side.
+    pub(super) fn load_lesson(&mut self, lesson: &'static Lesson) {
         self.open(move |_| {
-            let config = Config::of_scene(station.scene);
-            let mut scene = config.without_settling()?;
-            if scene.solver == SolverSettings::DEFAULT {
-                scene.solver = tour::SOLVER;
-            }
+            let (config, mut scene) = lesson.scene()?;
             budget::complete(&mut scene, &config.solver);
-            let worlds = (station.worlds)(scene.settings());
+            let worlds = (lesson.worlds)(scene.settings());
             Ok((LiveStart { worlds, ..start(&scene)? }, Opened::new(scene, config)))
         });
     }
@@ -97,7 +92,7 @@ impl AppState {
     /// Opens what a link tells of, with what its worlds have come to. Settings are those that it says, whatever the
     /// window would choose.
     pub(super) fn load_link(&mut self, link: RunLink) {
-        self.leave_tour();
+        self.leave_lessons();
         self.open(move |tell| {
             let config = link.config();
             let scene = settled(&config, tell)?;
@@ -113,13 +108,13 @@ impl AppState {
         &mut self,
         session: impl FnOnce() -> Result<(LiveStart, Opened)> + Send + 'static,
     ) {
-        self.leave_tour();
+        self.leave_lessons();
         self.open(move |_| session());
     }
 
     /// Opens a saved run, to go on with it.
     pub fn load_run(&mut self, state: SavedState) {
-        self.leave_tour();
+        self.leave_lessons();
         self.open(move |_| Ok(start_of_run(state)));
     }
 
@@ -130,7 +125,7 @@ impl AppState {
         if path.extension().is_some_and(|ending| ending == SESSION_ENDING) {
             return self.load_session(move || open_session(&path));
         }
-        self.leave_tour();
+        self.leave_lessons();
         self.open(move |_| Ok(start_of_run(SavedState::open(&path)?)));
     }
 

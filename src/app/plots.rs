@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use egui::{Color32, ComboBox, Label, RichText, Ui};
 use egui_plot::{
-    AxisHints, FilledArea, GridInput, GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot,
-    PlotPoints, PlotUi, Points, VLine,
+    AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoints,
+    PlotUi, Points, VLine,
 };
 use serde::{Deserialize, Serialize};
 
@@ -17,12 +17,14 @@ use crate::sim::{Beside, Observables, Quantity};
 
 /// Least width of a plot, points: below it fewer are shown in a row.
 const LEAST_WIDTH: f32 = 150.0;
+/// What an axis of slump shows at least: runs are compared by eye.
+const LEAST_SLUMP: f64 = 0.4;
 /// Least height of a vertical axis, as a part of its largest value.
 const LEAST_SPAN: f64 = 1e-3;
 /// The quantity that other piles are told of.
 const OTHERS: &str = "slump";
-/// How strong the colour of an interval is.
-const BAND: f32 = 0.22;
+/// How strong the colour of single other piles is.
+const OTHERS_STRENGTH: f32 = 0.45;
 /// Intervals of time for which a long curve shows its least and its largest value.
 const BUCKETS: usize = 300;
 
@@ -123,6 +125,9 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     let group = egui::Id::unique("time");
     let [least, most] = least_span(data, quantity, factor);
     let height = (ui.available_height() - 2.0).max(40.0);
+    // A ghost of a long run does not stretch the axis of a short one.
+    let ends = data.worlds.iter().filter_map(|world| world.curve.rows().last());
+    let until_secs = ends.map(|row| row.time_secs).fold(data.until_secs, f64::max);
     let response = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " s")
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
@@ -136,12 +141,16 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
-                let values = points(ghost, |row| scaled((quantity.value)(row)) / factor);
+                let shown = |row: &Observables| match row.time_secs <= until_secs {
+                    true => scaled((quantity.value)(row)) / factor,
+                    false => f64::NAN,
+                };
+                let values = points(ghost, shown);
                 let grey = Color32::from_gray(128).gamma_multiply(0.6);
                 plot.line(Line::new("the run before", values).color(grey).width(1.2));
             }
             if quantity.name == OTHERS {
-                data.worlds.iter().for_each(|world| band(plot, world));
+                data.worlds.iter().for_each(|world| others(plot, world, data.now_secs));
             }
             for WorldCurve { name, colour, curve, .. } in &data.worlds {
                 let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
@@ -159,19 +168,21 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
 }
 
-/// The mean of a world's other piles as a dashed line, and its 95 % interval.
-fn band(plot: &mut PlotUi<'_>, world: &WorldCurve) {
+/// A world's other piles as thin lines and their mean as a dashed one, up to the moment that is shown.
+fn others(plot: &mut PlotUi<'_>, world: &WorldCurve, now_secs: f64) {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else { return };
-    let name = format!("{}: mean of {} other piles, 95 %", world.name, band.count);
-    // Of two piles the interval is so wide that nothing else would be seen.
-    if band.count > 2 {
-        let area = FilledArea::new(name.clone(), &band.times_secs, &band.lows, &band.highs);
-        plot.add(area.fill_color(world.colour.gamma_multiply(BAND)));
+    let until_now = |points: &[[f64; 2]]| -> PlotPoints<'_> {
+        points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
+    };
+    for run in &band.runs {
+        let line = Line::new(format!("{}: another pile", world.name), until_now(run));
+        plot.line(line.color(world.colour.gamma_multiply(OTHERS_STRENGTH)).width(0.8));
     }
-    let points = band.times_secs.iter().zip(&band.means).map(|(&time, &mean)| [time, mean]);
-    let mean = Line::new(name, points.collect::<PlotPoints<'_>>());
-    let style = LineStyle::Dashed { length: 4.0 };
-    plot.line(mean.color(world.colour.gamma_multiply(0.75)).style(style).width(1.0));
+    let mean: Vec<_> =
+        band.times_secs.iter().zip(&band.means).map(|(&at, &mean)| [at, mean]).collect();
+    let name = format!("{}: mean of {} other piles", world.name, band.count);
+    let style = LineStyle::Dashed { length: 5.0 };
+    plot.line(Line::new(name, until_now(&mean)).color(world.colour).style(style).width(1.2));
 }
 
 /// What a vertical axis shows at least: around values that hardly differ, more than the digits of their rounding.
@@ -182,7 +193,10 @@ fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) ->
     let values = rows.map(|row| scaled(value(row))).filter(|value| value.is_finite());
     let ends = values.map(|value| [value, value]);
     let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);
-    let [low, high] = ends.unwrap_or_default();
+    let [mut low, mut high] = ends.unwrap_or_default();
+    if quantity.name == OTHERS {
+        (low, high) = (low.min(0.0), high.max(LEAST_SLUMP));
+    }
     let most = low.abs().max(high.abs());
     let least = if quantity.logarithmic { 1.0 } else { LEAST_SPAN * most };
     let room = (0.5 * (least - (high - low))).max(0.0);
@@ -225,10 +239,15 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
 
 /// Four marks at the most, at round numbers, or at whole powers of ten.
 fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
-    let (values, step) = ticks(grid.bounds.0, grid.bounds.1, 4);
-    let step_size = if log { step.max(1.0) } else { step };
-    let is_mark = |value: &f64| step == step_size || value.fract() == 0.0;
-    values.into_iter().filter(is_mark).map(|value| GridMark { value, step_size }).collect()
+    let (low, high) = grid.bounds;
+    if log {
+        let step_size = ((high - low) / 3.0).ceil().max(1.0);
+        let marks = (low / step_size).ceil() as i64..=(high / step_size).floor() as i64;
+        let mark = |count: i64| GridMark { value: count as f64 * step_size, step_size };
+        return marks.map(mark).collect();
+    }
+    let (values, step_size) = ticks(low, high, 4);
+    values.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
 /// Labels of the marks: numbers, or the powers of ten that numbers stand for.

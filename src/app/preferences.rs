@@ -9,14 +9,14 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use super::data_export::DataChoices;
+use super::lessons::LessonPlace;
+use super::panels::Page;
 use super::plots::ChosenPlot;
-use super::tour::Tour;
 use crate::config::Config;
 use crate::error::Result;
 use crate::headless::HeadlessOptions;
 use crate::live::Pace;
 use crate::render::{Style, Theme};
-use crate::sim::QUANTITIES;
 
 /// Choices that outlive the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,8 +26,12 @@ pub struct Preferences {
     pub theme: egui::ThemePreference,
     /// How the scene is drawn; its theme follows the window's.
     pub style: Style,
-    /// True while the sidebar is open.
-    pub sidebar: bool,
+    /// The page that is open beside the scene.
+    pub page: Option<Page>,
+    /// True while the bars above and below the scene are folded.
+    pub folded: bool,
+    /// True where a slider of the front starts the run again.
+    pub starts_again: bool,
     /// True where the run before shows behind the present one.
     pub ghost: bool,
     /// True where idle cores compute the mean over other piles.
@@ -45,7 +49,7 @@ pub struct Preferences {
     pub gravity: bool,
     /// Size of the window, points; none before the first.
     pub window_points: Option<[f64; 2]>,
-    /// Simulated time per time on the wall.
+    /// Simulated time per time on the wall, of films as well.
     pub speed: f64,
     /// As fast as the machine computes, whatever `speed` says.
     pub full_speed: bool,
@@ -53,8 +57,6 @@ pub struct Preferences {
     pub picture_size: [u32; 2],
     /// Pictures in a second of exported videos.
     pub video_rate_hz: f64,
-    /// Simulated time per time of exported videos.
-    pub video_speed: f64,
     /// Diameter of grains that the mouse adds, in mean diameters.
     pub new_grain_diameters: f64,
     /// Where exported files go.
@@ -63,8 +65,8 @@ pub struct Preferences {
     pub data: DataChoices,
     /// The scene that was open last.
     pub scene: Config,
-    /// How far the tour has come.
-    pub tour: Tour,
+    /// How far the lessons have come.
+    pub lesson: LessonPlace,
 }
 
 impl Default for Preferences {
@@ -72,11 +74,13 @@ impl Default for Preferences {
         Self {
             theme: egui::ThemePreference::Light,
             style: Style::default(),
-            sidebar: true,
+            page: None,
+            folded: false,
+            starts_again: true,
             ghost: true,
             ensemble: true,
             plots: true,
-            quantities: QUANTITIES.iter().map(|quantity| quantity.name.to_owned()).collect(),
+            quantities: vec!["slump".into()],
             chosen_plot: ChosenPlot::default(),
             histogram: "normal_force".into(),
             gravity: false,
@@ -85,12 +89,11 @@ impl Default for Preferences {
             full_speed: false,
             picture_size: [1600, 1000],
             video_rate_hz: 25.0,
-            video_speed: 1.0,
             new_grain_diameters: 1.0,
             folder: PathBuf::from("."),
             data: DataChoices::default(),
             scene: Config::default(),
-            tour: Tour::default(),
+            lesson: LessonPlace::default(),
         }
     }
 }

@@ -16,6 +16,7 @@ use super::opening::{LastOpened, is_saved_run};
 use super::painting::LegendCache;
 use super::panels::distributions::Distributions;
 use super::panels::speed::StepRace;
+use super::panels::trust::RunBudget;
 use super::panels::{Grabbing, GrainRef};
 use super::preferences::Preferences;
 use super::theme;
@@ -44,7 +45,9 @@ pub struct AppState {
     pub camera: SceneCamera,
     /// What the mouse has chosen and holds.
     pub mouse: Grabbing,
-    /// True while the tour is being taken.
+    /// What a slider of the front is being dragged to, and in which world.
+    pub(crate) draft: Option<(usize, Settings)>,
+    /// True in a lesson.
     pub touring: bool,
     pub(crate) shown: Shown,
     pub(crate) exports: Exports,
@@ -52,6 +55,7 @@ pub struct AppState {
     pub ensemble: Ensemble,
     pub(crate) distributions: Distributions,
     pub(crate) race: Option<StepRace>,
+    pub(crate) budget: Option<RunBudget>,
     /// Where controls lie, points: for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
 }
@@ -69,9 +73,9 @@ pub(super) struct OpeningState {
 /// What shows beside the run.
 #[derive(Default)]
 pub(crate) struct Shown {
-    /// The panel that is to be opened, where a station asks for one.
-    pub panel: Option<&'static str>,
     pub help: bool,
+    /// True while the list behind "Can I trust this?" is open.
+    pub trust: bool,
     /// Set where the window is to open its graphics device anew.
     pub restart_graphics: bool,
     pub(super) legend: LegendCache,
@@ -118,16 +122,18 @@ impl AppState {
             preferences,
             camera: SceneCamera::default(),
             mouse: Grabbing::default(),
+            draft: None,
             touring: false,
             shown: Shown::default(),
             exports: Exports::default(),
             ensemble: Ensemble::new(),
             distributions: Distributions::default(),
             race: None,
+            budget: None,
             controls: BTreeMap::new(),
         };
-        // A window that was closed on the tour and is opened for something else has the user's own choices.
-        state.preferences.put_tour_away();
+        // A window that was closed in a lesson and is opened for something else has the user's own choices.
+        state.preferences.put_lesson_away();
         state.live.send(Command::SetPace(state.preferences.pace()));
         state
     }
@@ -154,6 +160,11 @@ impl AppState {
         if in_step || self.wanted.len() != self.frame.worlds.len() {
             self.wanted = self.frame.worlds.iter().map(|world| world.controls).collect();
         }
+        if let Some((world, settings)) = self.draft
+            && let Some(wanted) = self.wanted.get_mut(world)
+        {
+            wanted.settings = settings;
+        }
         if let Some(wanted) = self.wanted.get(self.selected).filter(|_| !self.touring) {
             self.preferences.scene = self.config.clone().with_settings(&wanted.settings);
         }
@@ -178,6 +189,7 @@ impl AppState {
         self.mouse.pinned = None;
         self.exports.data.stretch = None;
         self.race = None;
+        self.draft = None;
         if let Some(opened) = self.opening.last.get() {
             self.config.clone_from(&opened.config);
             if let Some(arrangement) = opened.arrangement.clone() {

@@ -1,23 +1,19 @@
 //! The layout of the window as a function of the state alone, and the keys that act wherever the mouse is.
 
-use egui::{
-    CentralPanel, CollapsingHeader, Context, Event, Frame, Key, Margin, Modifiers, Panel, RichText,
-    ScrollArea, Ui,
-};
+use egui::{CentralPanel, Context, Event, Frame, Key, Margin, Modifiers, Panel, ScrollArea, Ui};
 
 use super::painting::fill;
-use super::panels::{SECTIONS, help, plots, scene, see, status, transport};
+use super::panels::{Page, front, grain, help, plots, scene, see, status, trust};
 use super::sharing::{LINK_START, RunLink};
 use super::state::AppState;
 use super::work::progress_bar;
-use super::{budget, opening, tour};
-use crate::config::Config;
+use super::{lessons, opening};
 use crate::live::Command;
 
 /// Width of the sidebar, points.
-const SIDEBAR: f32 = 296.0;
+const SIDEBAR: f32 = 364.0;
 /// Height of the plots, points.
-const PLOTS: f32 = 176.0;
+const PLOTS: f32 = 150.0;
 
 /// The whole window.
 pub fn ui(ui: &mut Ui, state: &mut AppState) {
@@ -33,66 +29,80 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     act_on_keys(&context, state);
 
     fill(ui, ui.max_rect(), ui.visuals().panel_fill);
-    let tight = Frame::new().inner_margin(Margin::symmetric(8, 4));
-    Panel::bottom("status").frame(tight).resizable(false).show(ui, |ui| status::show(ui, state));
-    if state.touring {
-        Panel::top("tour").frame(tight).resizable(false).show(ui, |ui| tour::show(ui, state));
+    if !state.preferences.folded {
+        bars(ui, state);
     }
-    let mut sidebar = state.preferences.sidebar;
-    Panel::left("sidebar")
-        .frame(Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 }))
-        .default_size(SIDEBAR)
-        .size_range(SIDEBAR - 26.0..=460.0)
-        .show_collapsible(ui, &mut sidebar, |ui| {
-            ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-                // The scroll bar floats over the right edge.
-                Frame::new().inner_margin(Margin { right: 8, ..Margin::ZERO }).show(ui, |ui| {
-                    sidebar_contents(ui, state);
-                });
-            });
-        });
-    state.preferences.sidebar = sidebar;
-    let mut shown = state.preferences.plots;
-    Panel::bottom("plots")
-        .frame(tight)
-        .resizable(true)
-        .default_size(PLOTS)
-        .size_range(120.0..=600.0)
-        .show_collapsible(ui, &mut shown, |ui| plots::show(ui, state));
-    state.preferences.plots = shown;
-    Panel::bottom("timeline").frame(tight).resizable(false).show(ui, |ui| {
-        transport::timeline(ui, state);
-    });
     CentralPanel::no_frame().show(ui, |ui| {
         scene::show(ui, state);
         waiting(ui, state);
     });
+    if state.preferences.folded {
+        unfold(ui, state);
+    }
+    grain::show_over_scene(ui, state);
+    trust::show(ui, state);
     help::show(ui, state);
 }
 
-fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
-    transport::release_button(ui, state);
-    if !state.touring {
-        // Other scenes say under their name what there is to watch.
-        let is_pile = state.frame.start.as_ref().is_some_and(|it| it.name == Config::DEFAULT_SCENE);
-        let world = state.world().filter(|_| is_pile);
-        if let Some(hint) = world.map(|world| budget::what_to_try(&world.controls.settings)) {
-            ui.label(RichText::new(hint).small().weak());
+/// All that stands around the scene.
+fn bars(ui: &mut Ui, state: &mut AppState) {
+    let tight = Frame::new().inner_margin(Margin::symmetric(8, 4));
+    let bar = |panel: Panel| panel.frame(tight).resizable(false);
+    bar(Panel::top("lesson")).show(ui, |ui| lessons::show(ui, state));
+    let mut is_open = state.preferences.page.is_some();
+    Panel::right("sidebar")
+        .frame(Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 }))
+        .default_size(SIDEBAR)
+        .size_range(SIDEBAR..=480.0)
+        .show_collapsible(ui, &mut is_open, |ui| sidebar(ui, state));
+    if !is_open {
+        state.preferences.page = None;
+    }
+    bar(Panel::bottom("status")).show(ui, |ui| status::show(ui, state));
+    if state.preferences.plots {
+        Panel::bottom("plots")
+            .frame(tight)
+            .resizable(true)
+            .default_size(PLOTS)
+            .size_range(100.0..=600.0)
+            .show(ui, |ui| plots::show(ui, state));
+    }
+    bar(Panel::bottom("plot line")).show(ui, |ui| plots::header(ui, state));
+    bar(Panel::bottom("front")).show(ui, |ui| front::show(ui, state));
+}
+
+/// The pages, of which one is open.
+fn sidebar(ui: &mut Ui, state: &mut AppState) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().button_padding.x = 5.0;
+        for page in Page::ALL {
+            let is_open = state.preferences.page == Some(page);
+            let tab = ui.selectable_label(is_open, page.title());
+            state.note_control(page.title(), tab.rect);
+            if tab.clicked() {
+                state.preferences.page = Some(page);
+            }
         }
-        tour::resume_button(ui, state);
-    }
-    let asked = state.shown.panel.take();
-    ui.add_space(2.0);
-    for section in SECTIONS {
-        let Some(heading) = section.heading(state) else { continue };
-        ui.separator();
-        let shown = CollapsingHeader::new(RichText::new(heading).heading())
-            .id_salt(section.id)
-            .default_open(section.open)
-            .open((asked == Some(section.id)).then_some(true))
-            .show_unindented(ui, |ui| (section.show)(ui, state));
-        state.note_control(section.id, shown.header_response.rect);
-    }
+    });
+    ui.separator();
+    let Some(page) = state.preferences.page else { return };
+    let area = ScrollArea::vertical().id_salt(page.title()).auto_shrink([false, false]);
+    area.show(ui, |ui| {
+        // The scroll bar floats over the right edge.
+        let frame = Frame::new().inner_margin(Margin { right: 8, ..Margin::ZERO });
+        frame.show(ui, |ui| page.show(ui, state));
+    });
+}
+
+/// The way back from the scene alone.
+fn unfold(ui: &Ui, state: &mut AppState) {
+    let area = egui::Area::new(egui::Id::unique("unfold"));
+    area.anchor(egui::Align2::RIGHT_TOP, [-8.0, 8.0]).show(ui.ctx(), |ui| {
+        let button = ui.button("▾").on_hover_text("Show the bars (B)");
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Unfold"));
+        state.preferences.folded &= !button.clicked();
+    });
 }
 
 /// What the middle says while a start is made, and the button that gives it up.
@@ -156,6 +166,14 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     }
     if pressed(Key::S) {
         see::save_picture(context, state);
+    }
+    if pressed(Key::B) {
+        state.preferences.folded = !state.preferences.folded;
+    }
+    for (key, is_faster) in [(Key::OpenBracket, false), (Key::CloseBracket, true)] {
+        if pressed(key) {
+            front::change_pace(state, is_faster);
+        }
     }
     if pressed(Key::H) {
         state.shown.help = !state.shown.help;

@@ -1,9 +1,9 @@
 //! Work that takes longer than the window may wait: on a thread of its own, with how far it is, and to be stopped.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -33,7 +33,7 @@ struct WorkState {
 pub(crate) struct Reporter {
     shared: Arc<WorkState>,
     context: egui::Context,
-    shown: std::cell::Cell<Instant>,
+    shown: Mutex<Instant>,
 }
 
 impl<T: Send + 'static> Work<T> {
@@ -46,7 +46,7 @@ impl<T: Send + 'static> Work<T> {
         let (outbox, outcome) = channel();
         let (context, of_thread) = (context.clone(), Arc::clone(&shared));
         let thread = std::thread::spawn(move || {
-            let shown = std::cell::Cell::new(Instant::now());
+            let shown = Mutex::new(Instant::now());
             let reporter = Reporter { shared: of_thread, context, shown };
             // The window may have closed.
             let _ = outbox.send(work(&reporter));
@@ -110,8 +110,9 @@ impl Reporter {
     /// Says which part is done, and asks whether to go on.
     pub(crate) fn tell(&self, part: f64) -> ControlFlow<()> {
         self.shared.done.store((part as f32).clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
-        if self.shown.get().elapsed() >= INTERVAL {
-            self.shown.set(Instant::now());
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        if shown.elapsed() >= INTERVAL {
+            *shown = Instant::now();
             self.context.request_repaint();
         }
         if self.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

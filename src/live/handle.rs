@@ -24,12 +24,12 @@ pub struct LiveOptions {
 }
 
 impl Default for LiveOptions {
-    /// Nobody to wake, 60 frames a second, 256 MiB.
+    /// Nobody to wake, 60 frames a second, 96 MiB.
     fn default() -> Self {
         Self {
             wake: Box::new(|| {}),
             frame_interval: Duration::from_micros(16_600),
-            recording_bytes: 256 << 20,
+            recording_bytes: 96 << 20,
         }
     }
 }

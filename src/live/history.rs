@@ -258,7 +258,12 @@ impl RunHistory {
     /// Keeps the present run as it is, where its next tick leaves what is recorded behind.
     pub(super) fn keep_before_tick(&mut self) {
         if self.present.branches() {
-            self.keep_copy(self.present.clone());
+            let mut before = self.present.clone();
+            // What was recorded had other settings than those that leave it.
+            for world in &mut before.worlds {
+                world.record.restore_controls(&mut world.simulation);
+            }
+            self.keep_copy(before);
         }
     }
 

@@ -31,7 +31,7 @@ fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     robot.take_steps(10);
     let (before, grains) = (robot.bits(), count(&robot));
     robot.state_mut().preferences.new_grain_diameters = 1.5;
-    let free = robot.place("scene", 0.5, 0.08);
+    let free = robot.place("scene", 0.555, 0.08);
     shift_click(&mut robot, free);
     assert_eq!(count(&robot), grains + 1);
     let added = robot.world().snapshot.grains[grains];
@@ -81,7 +81,7 @@ fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     robot.take_steps(30);
     robot.seek(0.01);
     assert_eq!(robot.steps(), 10);
-    let free = robot.place("scene", 0.5, 0.08);
+    let free = robot.place("scene", 0.555, 0.08);
     shift_click(&mut robot, free);
     assert_eq!(robot.state().frame.past.len(), 1, "the run before is kept");
     assert!((robot.state().frame.recorded_secs() - 0.01).abs() < 1e-9);
@@ -159,7 +159,7 @@ fn at(robot: &Robot, point: DVec2) -> Pos2 {
 #[test]
 fn the_panel_says_how_and_how_large() {
     let mut robot = Robot::open(pile());
-    robot.click("By hand");
+    robot.click("Pile");
     let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "New grain");
     assert_eq!(field.accesskit_node().numeric_value(), Some(1.0));
     robot.key(egui::Key::H);

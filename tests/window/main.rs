@@ -11,7 +11,9 @@
 mod alarms;
 mod controls;
 mod exports;
+mod front;
 mod hand;
+mod lessons;
 mod looking;
 mod other_piles;
 mod pictures;
@@ -20,7 +22,6 @@ mod recording;
 mod recordings;
 mod robot;
 mod sessions;
-mod tour;
 mod videos;
 
 #[path = "../common/probed.rs"]

@@ -4,6 +4,8 @@ use crate::robot::*;
 
 /// They give way to whatever else the machine does.
 const PATIENCE: Duration = Duration::from_secs(600);
+/// The switch.
+const OTHERS: &str = "Other piles, on idle cores";
 /// Piles that settle in no time.
 const GRAINS: usize = 12;
 const WIDTH: f64 = 5.0;
@@ -112,7 +114,7 @@ fn a_run_that_was_pulled_or_changed_on_its_way_has_none() {
     mean(&mut robot, 0, 0.1);
     let pull = Pull { grain: 3, target: DVec2::new(0.0, 0.1) };
     robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
-    robot.click("Step");
+    robot.key(egui::Key::ArrowRight);
     robot.send(Command::SetPull(0, None));
     assert_eq!(robot.state().ensemble.mean_at(0, 0.1), None);
     assert!(robot.state().ensemble.threads() > 0);
@@ -123,16 +125,16 @@ fn switched_off_there_is_no_thread() {
     let cache = folder();
     let mut robot = open(cache.path());
     robot.until("a thread", |state| state.ensemble.threads() > 0);
-    robot.click("other piles");
+    robot.clicks(&["Compare", OTHERS]);
     assert_eq!(robot.state().ensemble.threads(), 0);
     assert_eq!(robot.state().ensemble.mean_at(0, 0.0), None);
     // A scene that is no pile has none either.
-    robot.click("other piles");
+    robot.click(OTHERS);
     robot.until("a thread", |state| state.ensemble.threads() > 0);
     robot.load(Config::of_scene("cradle"));
     robot.harness.step();
     assert_eq!(robot.state().ensemble.threads(), 0);
-    assert!(robot.harness.query_by_label("other piles").is_none());
+    assert!(robot.harness.query_by_label(OTHERS).is_none());
 }
 
 /// So many grains that they fall for a while.

@@ -33,10 +33,7 @@ fn worlds_side_by_side_in_the_dark() {
         Preferences { theme: egui::ThemePreference::Dark, ..Preferences::default() };
     preferences.style.colour_by = slump::render::ColourBy::Coordination;
     let mut robot = Robot::open_with_gpu(Config::default(), preferences);
-    for section in ["Physics", "Run", "Compare"] {
-        robot.click(section);
-    }
-    robot.click("Paper Fig. 4");
+    robot.clicks(&["Compare", "Paper Fig. 4"]);
     check(&mut robot, "window-compare");
 }
 
@@ -44,9 +41,7 @@ fn worlds_side_by_side_in_the_dark() {
 fn the_panels_of_a_physicist() {
     let preferences = Preferences { plots: false, ..Preferences::default() };
     let mut robot = Robot::open_with_gpu(Config::default(), preferences);
-    for section in ["Physics", "Run", "See", "Solver"] {
-        robot.click(section);
-    }
+    robot.clicks(&["Law, solver", "Expert", "Pile"]);
     robot.state_mut().mouse.pinned = Some(GrainRef { world: 0, grain: 70 });
     check(&mut robot, "window-panels");
 }

@@ -75,7 +75,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     // What no command makes says so.
     settings.parameters.bond = 5.0;
     robot.state_mut().change(0, settings);
-    robot.click("Step");
+    robot.key(egui::Key::ArrowRight);
     let path = written(&mut robot, |robot| robot.key(egui::Key::S), "png");
     assert!(self::texts(&path).0.contains_key("Changes"));
 }
@@ -88,7 +88,7 @@ fn compared_worlds_are_one_picture() {
     let base = robot.settings();
     let worlds = [0.0, 20.0, 50.0, 100.0].map(|bond| base.with_bond(bond)).to_vec();
     robot.send(Command::Compare(worlds));
-    robot.click("Step");
+    robot.key(egui::Key::ArrowRight);
     let path = written(&mut robot, |robot| robot.key(egui::Key::S), "png");
     assert!(name(&path).starts_with("slump-pile-4worlds-"), "{}", name(&path));
     let (texts, size) = texts(&path);
@@ -106,8 +106,8 @@ fn compared_worlds_are_one_picture() {
 fn a_table_stays_plain_and_a_text_beside_it_says_what_it_is_of() {
     let folder = folder();
     let mut robot = open(folder.path());
-    robot.click("Step");
-    let table = written(&mut robot, |robot| robot.click("CSV"), "csv");
+    robot.key(egui::Key::ArrowRight);
+    let table = written(&mut robot, |robot| robot.clicks(&["Compare", "Curves as CSV"]), "csv");
     let text = read(&table);
     assert!(text.starts_with("world,step,time_secs,"), "{text}");
     let beside = read(table.with_extension("csv.txt"));

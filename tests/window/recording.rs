@@ -12,7 +12,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     let mut robot = Robot::open(pile());
     for step in 0..90 {
         if step == 30 {
-            robot.click("2e-3");
+            robot.type_number("Δt, time step", "2e-3");
         }
         if step == 50 {
             robot.type_number("Bond", "80");
@@ -70,17 +70,21 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     robot.take_steps(50);
     let curve = curve_of(&robot);
     robot.seek(0.02);
-    robot.click("5e-3");
+    robot.type_number("Δt, time step", "5e-3");
     assert!(robot.state().frame.branching);
-    robot.click("Step");
+    robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.steps(), 21);
     assert_eq!(robot.world().curve.len(), 22);
     assert!((robot.state().frame.recorded_secs() - 0.025).abs() < 1e-12);
-    assert_eq!(robot.state().frame.past.len(), 1);
+    let past = robot.state().frame.past.clone();
+    assert_eq!(past.len(), 1);
+    let of_past = past[0].worlds[0].controls.settings.parameters.time_step_secs;
+    assert_eq!(of_past, 1e-3, "the run before is told of with its own time step");
 
     robot.command_key(egui::Key::Z);
     robot.settle();
     assert_eq!(curve_of(&robot), curve);
+    assert_eq!(robot.settings().parameters.time_step_secs, 1e-3, "and so are its sliders");
     let past = robot.state().frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
     // What is undone can be done again, as often as one likes.
@@ -227,7 +231,7 @@ fn runs_have_the_names_that_they_are_given() {
     robot.take_steps(3);
     robot.key(egui::Key::R);
     robot.take_steps(2);
-    robot.click("Physics");
+    robot.click("Compare");
     let number = robot.state().frame.past[0].number;
     robot.type_number(&format!("Name of run {number}"), "first try");
     robot.type_number("Name of this run", "second");

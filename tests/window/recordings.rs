@@ -14,7 +14,7 @@ pub fn open(config: Config, folder: &Path, formats: &[FormatName]) -> Robot {
     let mut robot = Robot::open(config);
     let data = DataChoices { folder: folder.to_owned(), each_step: true, ..DataChoices::default() };
     robot.state_mut().preferences.data = DataChoices { formats: formats.to_vec(), ..data };
-    robot.click("Data");
+    robot.click("Save");
     robot
 }
 

@@ -2,7 +2,7 @@
 
 pub use egui_kittest::kittest::{NodeT, Queryable};
 pub use glam::DVec2;
-pub use slump::app::{AppState, GrainRef, Preferences};
+pub use slump::app::{AppState, GrainRef, Page, Preferences};
 pub use slump::config::{Config, SavedState};
 pub use slump::data::{FormatName, read_grains};
 pub use slump::live::{Command, Live, LiveOptions, Pace, WorldFrame};
@@ -41,7 +41,7 @@ impl Robot {
     pub fn open_in(folder: &Path, config: Config) -> Self {
         let mut robot = Self::open(config);
         robot.state_mut().preferences.folder = folder.to_owned();
-        robot.click("Data");
+        robot.click("Save");
         robot
     }
 
@@ -57,7 +57,7 @@ impl Robot {
     ) -> Self {
         let live = Live::spawn(LiveOptions::default()).unwrap();
         // What other piles do is seen by those tests that ask for them.
-        let preferences = Preferences { ensemble: false, ..preferences };
+        let preferences = Preferences { ensemble: false, starts_again: false, ..preferences };
         let state = AppState::new(live, config, preferences);
         let window = Harness::builder()
             .with_size(Vec2::new(1000.0, 700.0))
@@ -182,6 +182,11 @@ impl Robot {
     }
 
     pub fn click(&mut self, label: &str) {
+        if Page::ALL.iter().any(|page| page.title() == label)
+            && self.state().preferences.page.is_none()
+        {
+            self.click("More ▾");
+        }
         // Panels may still be opening, and the control may lie below the edge of the sidebar.
         self.harness.get_by_label(label).scroll_to_me();
         for _ in 0..10 {

@@ -27,7 +27,7 @@ fn a_session_brings_back_worlds_record_past_and_window() {
     let mut robot = two_worlds();
     robot.state_mut().preferences.theme = egui::ThemePreference::Dark;
     robot.state_mut().preferences.plots = false;
-    robot.click("Solver");
+    robot.click("Law, solver");
     let path = robot.save_session(folder.path());
     assert!(path.extension().is_some_and(|ending| ending == "session"));
     let (before, past) = (shown(&robot), robot.state().frame.past.len());
@@ -58,7 +58,7 @@ fn a_session_brings_back_worlds_record_past_and_window() {
 }
 
 #[test]
-fn the_tour_goes_on_at_its_place() {
+fn a_lesson_goes_on_at_its_place() {
     let folder = folder();
     let mut robot = Robot::open(Config::default());
     robot.state_mut().visit(2);
@@ -66,7 +66,7 @@ fn the_tour_goes_on_at_its_place() {
     let path = robot.save_session(folder.path());
     let mut again = Robot::open_saved(&path);
     assert!(again.state().touring);
-    assert_eq!(again.state().preferences.tour.at, 2);
+    assert_eq!(again.state().preferences.lesson.at, 2);
     assert_eq!(again.state().preferences.speed, robot.state().preferences.speed);
     again.click("Leave");
     assert!(!again.state().touring);
@@ -78,7 +78,7 @@ fn a_file_that_is_no_whole_session_is_refused_in_a_sentence() {
     let mut robot = Robot::open(Config::of_scene("cradle"));
     robot.take_steps(3);
     robot.state_mut().preferences.folder = folder.path().to_owned();
-    robot.clicks(&["Data", "Save session"]);
+    robot.clicks(&["Save", "Save session"]);
     let path = robot.saved();
     let bytes = bytes(&path);
     let mut flipped = bytes.clone();
@@ -228,7 +228,7 @@ fn an_earlier_moment_is_saved_as_it_was() {
     let folder = folder();
     let mut robot = Robot::open_in(folder.path(), pile());
     robot.take_steps(30);
-    robot.click("2e-3");
+    robot.type_number("Δt, time step", "2e-3");
     robot.take_steps(20);
     let then = saved(&mut robot);
     let at_secs = robot.state().frame.time_secs();

@@ -6,8 +6,10 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 
-/// Bytes of the largest text that is read as a whole, and of the largest page of a table.
+/// Bytes of the largest page of a table.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
+/// Bytes of the largest text that is read as a whole: TOML takes some 60 times as many, and 10,000 grains take one MiB.
+const MOST_OF_TEXT: u64 = 32 << 20;
 /// Bytes of the longest line of a table.
 const MOST_OF_LINE: usize = 1 << 20;
 
@@ -30,9 +32,9 @@ pub(crate) fn open(path: &Path, form: &str) -> Result<File> {
 /// As [`open`], and where it is none or longer than any that is meant.
 pub fn read_text(path: &Path, form: &str) -> Result<String> {
     let mut text = String::new();
-    let read = open(path, form)?.take(MOST_BYTES + 1).read_to_string(&mut text);
-    if text.len() as u64 > MOST_BYTES {
-        let reason = format!("has more than {MOST_BYTES} bytes, but must have no more");
+    let read = open(path, form)?.take(MOST_OF_TEXT + 1).read_to_string(&mut text);
+    if text.len() as u64 > MOST_OF_TEXT {
+        let reason = format!("has more than {MOST_OF_TEXT} bytes, but must have no more");
         return Err(Error::file(path, reason));
     }
     read.map(|_| text).map_err(|error| Error::unread(path, error, form))

@@ -28,7 +28,7 @@ mod statistics;
 mod sweep;
 mod validate;
 
-pub use budget::{BudgetOptions, ErrorBudget, budget, made as made_budget};
+pub use budget::{BudgetOptions, ErrorBudget, Trust, budget, made as made_budget};
 pub use figures::{figure_names, reproduce};
 pub use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,

@@ -15,14 +15,15 @@ use super::preferences::user_folder;
 use super::state::AppState;
 use crate::scene::NewPile;
 use crate::sim::Settings;
+pub(super) use pool::on_idle_cores;
 use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
 use runs::others_of;
 
 /// The rule that a mean goes by, for whoever points at it.
 const RULE: &str = "Idle cores run piles that differ from this one in their seed alone, with the present settings from \
-                    the start on. The band is their mean slump with its 95 % interval (Student's). Other settings \
-                    begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
+                    the start on: thin lines, and their mean dashed. ± is the 95 % interval of that mean (Student's), not \
+                    how far piles differ. Other settings begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
                     reset it. The seed of the shipped pile, which was chosen, is never among them.";
 
 /// The other piles of what is open.
@@ -48,6 +49,11 @@ impl Ensemble {
     pub fn keep_in(&mut self, folder: PathBuf) {
         self.stop();
         self.folder = Some(folder);
+    }
+
+    /// Where initial states are kept.
+    pub(super) fn folder(&self) -> Option<PathBuf> {
+        self.folder.clone()
     }
 
     /// Ends all threads and forgets what they came to.

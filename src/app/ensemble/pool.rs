@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::runs::{Band, SlumpSeries, scene_of, slump};
 use crate::app::opening::{Opened, settled_part};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::check_writable;
 use crate::scene::{NewPile, Settling};
 use crate::sim::Settings;
@@ -34,6 +34,14 @@ fn give_way() {
         // Where it is refused, the thread shares its core as any other would.
         let _ = rustix::process::setpriority_process(None, NICEST);
     }
+}
+
+/// Does work on as many threads as there are idle cores, one at least, below all others.
+pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(idle_cores().max(1));
+    let pool = builder.start_handler(|_| give_way()).build();
+    let refuse = |error| Error::value("threads", error, "threads that can be made");
+    pool.map_err(refuse)?.install(work)
 }
 
 /// What a thread does with a pile, by the pile's place among the others.

@@ -11,7 +11,7 @@ use crate::study;
 use crate::world::Grain;
 
 /// A run's slump: simulated time, s, and Δy.
-pub(super) type SlumpSeries = Vec<[f64; 2]>;
+pub(crate) type SlumpSeries = Vec<[f64; 2]>;
 
 /// Mean slump of some runs and its 95 % interval by Student's distribution, at the times that all of them have.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,12 +23,15 @@ pub(crate) struct Band {
     /// Upper ends of the intervals; ∞ for one run.
     pub highs: Vec<f64>,
     pub count: usize,
+    /// The runs themselves.
+    pub runs: Vec<SlumpSeries>,
 }
 
 impl Band {
     /// Of runs with the same settings, which have the same times.
     pub(super) fn of(runs: &[&SlumpSeries]) -> Self {
-        let mut band = Self { count: runs.len(), ..Self::default() };
+        let all = runs.iter().map(|&run| run.clone()).collect();
+        let mut band = Self { count: runs.len(), runs: all, ..Self::default() };
         let shared = runs.iter().map(|run| run.len()).min().unwrap_or(0);
         for index in 0..shared {
             let slumps: Vec<f64> = runs.iter().map(|run| run[index][1]).collect();

@@ -2,8 +2,7 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::physics::PAPER_TIME_STEPS;
-use crate::app::budget::PAPER;
+use crate::app::budget::{BUDGETS, PAPER};
 use crate::app::setting_control::written;
 use crate::app::state::AppState;
 use crate::app::theme;
@@ -14,6 +13,8 @@ use crate::solver::{Fallback, FrictionModel, METHODS, Method, MethodInfo, Solver
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::FrictionCone;
 
+/// The paper's time steps, s.
+const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 /// Most worlds side by side.
 pub(crate) const MOST_WORLDS: usize = 6;
 
@@ -153,7 +154,7 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.with_layout(left, |ui| {
                 let chosen = Button::selectable(state.selected == index, name.as_str());
-                let hint = format!("{name}\nPhysics and Solver are about this world.");
+                let hint = format!("{name}\nSliders, Law and solver are about this world.");
                 if ui.add(chosen.truncate()).on_hover_text(hint).clicked() {
                     state.selected = index;
                 }
@@ -182,6 +183,8 @@ pub(crate) fn title(state: &AppState, index: usize) -> String {
 
 /// Settings whose differences follow from those of others.
 const FOLLOWING: [&str; 3] = ["stop", "tolerance", "fallback"];
+/// And those that follow from the method.
+const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
 
 /// What tells one of such worlds from the others: each setting in which any of them differ, or Bond and Δt.
 pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
@@ -192,14 +195,24 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
         worlds.iter().any(|one| one.settings.get(name) != worlds[0].settings.get(name))
     };
     let names = || Settings::about().map(|about| about.name).filter(any_differs);
-    let reporter: Vec<&str> = names().filter(|name| !FOLLOWING.contains(name)).collect();
+    let differs_in_method = any_differs(&"solver");
+    let follows = |name: &str| {
+        FOLLOWING.contains(&name) || (differs_in_method && FOLLOWING_METHOD.contains(&name))
+    };
+    let reporter: Vec<&str> = names().filter(|name| !follows(name)).collect();
     let told: Vec<&str> = match (reporter.is_empty(), names().next()) {
         (false, _) => reporter,
         (true, Some(_)) => names().collect(),
         (true, None) => vec!["bond", "dt"],
     };
-    let said: Vec<String> = told.into_iter().filter_map(|name| said(&settings, name)).collect();
-    said.join(", ")
+    // Methods that are compared go by a name where they have one.
+    let named =
+        BUDGETS.iter().find(|budget| differs_in_method && budget.settings == settings.solver);
+    let is_told = |name: &&str| named.is_none() || !["solver", "max-sweeps"].contains(name);
+    let said = told.into_iter().filter(is_told).filter_map(|name| said(&settings, name));
+    let all: Vec<String> =
+        named.map(|budget| budget.name.to_owned()).into_iter().chain(said).collect();
+    all.join(", ")
 }
 
 /// A setting in a title.
@@ -234,6 +247,9 @@ mod tests {
         assert_eq!(titles(&[base, base.over(5e-3)]), ["Δt 1e-3 s", "Δt 5e-3 s"]);
         let range = stepped(base, Stepper::Range);
         assert_eq!(titles(&[base, range.over(1e-4)]), ["moreau, Δt 1e-3 s", "range, Δt 1e-4 s"]);
+        let few = SolverSettings { method: Method::Nsgs, max_sweeps: 5, ..SolverSettings::PAPER };
+        let few = Settings { solver: few, ..base };
+        assert_eq!(titles(&[few, base]), ["nsgs, 5 sweeps", "Certified"]);
         let mut cone = base;
         cone.parameters.cone = FrictionCone::Compressive;
         assert_eq!(titles(&[base, cone]), ["cone shifted", "cone compressive"]);

@@ -2,6 +2,7 @@
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 
+use super::grain::compact;
 use crate::app::data_export::{DataChoices, DataOrder};
 use crate::app::state::AppState;
 use crate::app::work::{Reporter, Work};
@@ -11,7 +12,6 @@ use crate::data::{DataSettings, FormatName, check_format};
 const EVERY: [f64; 2] = [1e-9, 1e9];
 
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    super::see::folder(ui, state);
     let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, state));
     ui.separator();
@@ -127,7 +127,7 @@ fn stretch(ui: &mut Ui, state: &mut AppState) {
         if ui.checkbox(&mut is_all, "The whole recording").on_hover_text(hint).changed() {
             state.exports.data.stretch = (!is_all).then_some([first, last]);
         }
-        ui.label(RichText::new(format!("{first:.4} … {last:.4} s")).small().weak());
+        ui.label(RichText::new(format!("{} … {} s", compact(first), compact(last))).small().weak());
     });
     let Some(stretch) = &mut state.exports.data.stretch else { return };
     egui::Grid::new("stretch").num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {

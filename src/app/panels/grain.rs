@@ -1,14 +1,15 @@
-//! Panel: the pinned grain and its contacts.
+//! The pinned grain: on its page with its contacts, or in a corner of the scene.
 
 use egui::{RichText, ScrollArea, Ui};
 
+use super::Page;
 use crate::app::state::AppState;
 use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
-/// Shows the panel; nothing without a pinned grain.
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+/// Shows the pinned grain with its contacts; nothing where there is none.
+pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
     let Some(pinned) = state.mouse.pinned else { return };
     let Some(world) = state.frame.worlds.get(pinned.world) else { return };
     describe(ui, world, pinned.grain);
@@ -17,7 +18,35 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if ui.button("Unpin").clicked() {
         state.mouse.pinned = None;
     }
+    ui.separator();
 }
+
+/// Shows it in a corner of the scene where its page is not open.
+pub(crate) fn show_over_scene(ui: &Ui, state: &mut AppState) {
+    if state.preferences.page == Some(Page::Pile) {
+        return;
+    }
+    let Some(pinned) = state.mouse.pinned else { return };
+    let Some(world) = state.frame.worlds.get(pinned.world) else { return };
+    let corner = state.controls.get("scene").map_or(egui::Pos2::ZERO, egui::Rect::right_top);
+    let mut unpins = false;
+    egui::Area::new(egui::Id::unique("pinned grain"))
+        .pivot(egui::Align2::RIGHT_TOP)
+        .fixed_pos(corner + egui::vec2(-8.0, 8.0))
+        .show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                describe(ui, world, pinned.grain);
+                let unpin = ui.button("Unpin");
+                unpins = unpin.on_hover_text("Its contacts are listed under More, Pile").clicked();
+            });
+        });
+    if unpins {
+        state.mouse.pinned = None;
+    }
+}
+
+/// Slower than this, m/s, a grain rests: what is left is the solver's.
+const AT_REST: f64 = 1e-8;
 
 /// The state of a grain, as a small table.
 pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
@@ -33,10 +62,8 @@ pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         let at = grain.position / diameter;
         row("position", format!("{:.3}, {:.3} d", at.x, at.y));
         row("radius", format!("{:.3} d", grain.radius / diameter));
-        row(
-            "velocity",
-            format!("{}, {}", si(grain.velocity.x, "m/s"), si(grain.velocity.y, "m/s")),
-        );
+        let speed = |along: f64| si(if along.abs() < AT_REST { 0.0 } else { along }, "m/s");
+        row("velocity", format!("{}, {}", speed(grain.velocity.x), speed(grain.velocity.y)));
         row("spin", format!("{:.3} rad/s", grain.angular_velocity));
         row("overlap", format!("{:.3} % of d", 100.0 * grain.overlap / diameter));
         row("force Σ|N|", si(grain.force, "N"));
@@ -85,10 +112,21 @@ fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
     area.show(ui, |ui| grid.show(ui, rows));
 }
 
+/// Larger numbers are written with an exponent.
+const MOST_WRITTEN: f64 = 1e4;
+
+/// A number to three decimals, in few characters however large it is.
+pub(super) fn compact(number: f64) -> String {
+    if number.abs() < MOST_WRITTEN { format!("{number:.3}") } else { format!("{number:.2e}") }
+}
+
 /// A number with four digits and a prefixed unit.
 pub(super) fn si(value: f64, unit: &str) -> String {
     let (prefix, factor) = si_prefix(value);
     let number = value / factor;
+    if number.abs() >= MOST_WRITTEN {
+        return format!("{number:.3e} {prefix}{unit}");
+    }
     let decimals = match number.abs() {
         100.0.. => 1,
         10.0.. => 2,

@@ -4,11 +4,13 @@ use egui::{Align2, RichText, Ui};
 
 use crate::app::state::AppState;
 
-const KEYS: [(&str, &str); 13] = [
+const KEYS: [(&str, &str); 15] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
-    ("R", "reset to the start, with the present settings; the run is kept"),
+    ("R", "again from the start, with the present settings; the run is kept"),
     ("Ctrl Z", "back to the run that was there before"),
+    ("[  ]", "slower, faster"),
+    ("B", "fold the bars: the scene is the window"),
     ("F", "frame the whole scene"),
     ("S", "save a picture of the scene"),
     ("Ctrl S", "save the session: worlds, record and window"),
@@ -57,8 +59,8 @@ fn contents(ui: &mut Ui) {
     ui.label(
         "A pile of cohesive grains, computed by Contact Dynamics. The time step Δt is no mere \
                  matter of accuracy: cohesion cancels an opening speed of Bond·g·Δt in every step, \
-                 so that a larger Δt makes a stronger pile. Set Δt, release the walls, reset, and \
-                 try another.",
+                 so that a weakly cohesive pile holds better at a larger Δt. Drag a slider, let go, and \
+                 the pile starts again with the new value.",
     );
     ui.add_space(8.0);
     for (title, rows) in [("Keys", &KEYS[..]), ("Mouse", &MOUSE[..])] {

@@ -5,8 +5,9 @@
 pub(super) mod compare;
 mod data;
 pub(super) mod distributions;
+pub(super) mod front;
 mod grabbing;
-mod grain;
+pub(super) mod grain;
 pub(super) mod help;
 mod physics;
 pub(super) mod plots;
@@ -16,57 +17,92 @@ pub(super) mod see;
 mod solver;
 pub(super) mod speed;
 pub(super) mod status;
-pub(super) mod transport;
+pub(super) mod trust;
 
-use egui::Ui;
+use egui::{CollapsingHeader, RichText, Ui};
+use serde::{Deserialize, Serialize};
 
 use super::state::AppState;
 
+pub use front::FRONT_SETTINGS;
 pub use grabbing::{Grabbing, GrainRef};
 
-/// A panel of the sidebar, below a heading that opens and closes it.
-pub(super) struct Section {
-    /// By which scripts that drive the window find it, and the window's memory of the layout.
-    pub id: &'static str,
-    title: &'static str,
-    /// True where it is open at first.
-    pub open: bool,
-    pub show: fn(&mut Ui, &mut AppState),
+/// A page of the sidebar, of which one is open at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Page {
+    /// What is stepped: the scene, its grains, and what a hand does to them.
+    Pile,
+    /// How it is stepped and solved.
+    Solver,
+    /// Worlds and runs side by side, and what is measured of them.
+    Compare,
+    /// How it is drawn.
+    Look,
+    /// What goes to files.
+    Save,
 }
 
-/// The sidebar, from top to bottom.
-pub(super) const SECTIONS: [Section; 10] = [
-    section("physics", "Physics", true, physics::show),
-    section("grain", "Grain", true, grain::show),
-    section("run", "Run", true, run::show),
-    section("hand", "By hand", false, grabbing::show),
-    section("see", "See", false, see::show),
-    section("spread", "Distributions", false, distributions::show),
-    section("data", "Data", false, data::show),
-    section("compare", "Compare", false, compare::show),
-    section("solver", "Solver", false, solver::show),
-    section("speed", "Speed and accuracy", false, speed::show),
-];
+impl Page {
+    /// All of them, in their order.
+    pub const ALL: [Self; 5] = [Self::Pile, Self::Solver, Self::Compare, Self::Look, Self::Save];
 
-const fn section(
-    id: &'static str,
-    title: &'static str,
-    open: bool,
-    show: fn(&mut Ui, &mut AppState),
-) -> Section {
-    Section { id, title, open, show }
-}
-
-impl Section {
-    /// Its heading; nothing where it is not there.
-    pub(super) fn heading(&self, state: &AppState) -> Option<String> {
-        match self.id {
-            "grain" if state.mouse.pinned.is_none() => None,
-            // A name would make the panel as wide as it is long.
-            "physics" | "data" if state.compares() => {
-                Some(format!("{} of world {}", self.title, state.selected + 1))
-            }
-            _ => Some(self.title.to_owned()),
+    /// What its tab says.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Pile => "Pile",
+            Self::Solver => "Law, solver",
+            Self::Compare => "Compare",
+            Self::Look => "Look",
+            Self::Save => "Save",
         }
     }
+
+    /// Shows what is on it.
+    pub(super) fn show(self, ui: &mut Ui, state: &mut AppState) {
+        // A name would make the panel as wide as it is long.
+        if state.compares() && matches!(self, Self::Solver | Self::Save) {
+            ui.label(RichText::new(format!("Of world {}", state.selected + 1)).strong());
+        }
+        match self {
+            Self::Pile => {
+                run::show(ui, state);
+                ui.separator();
+                grain::show(ui, state);
+                grabbing::show(ui, state);
+            }
+            Self::Solver => {
+                physics::show(ui, state);
+                ui.separator();
+                solver::show(ui, state);
+                folded(ui, state, "Speed and accuracy", speed::show);
+            }
+            Self::Compare => {
+                compare::show(ui, state);
+                run::earlier_runs(ui, state);
+                ui.separator();
+                plots::choices(ui, state);
+                folded(ui, state, "Distributions", distributions::show);
+            }
+            Self::Look => see::look(ui, state),
+            Self::Save => {
+                see::folder(ui, state);
+                see::pictures(ui, state);
+                ui.separator();
+                data::show(ui, state);
+                ui.separator();
+                run::command_line(ui, state);
+            }
+        }
+    }
+}
+
+/// What is computed only for those who ask for it.
+fn folded(
+    ui: &mut Ui,
+    state: &mut AppState,
+    title: &'static str,
+    show: fn(&mut Ui, &mut AppState),
+) {
+    ui.separator();
+    CollapsingHeader::new(title).show_unindented(ui, |ui| show(ui, state));
 }

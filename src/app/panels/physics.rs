@@ -1,18 +1,16 @@
-//! Panel: the contact law with its numbers, and the time step.
+//! Panel: the stepper with its contact law, the numbers that are not at the front, and what all of them mean together.
 
 use egui::{RichText, Ui};
 use glam::DVec2;
 
-use super::grain::si;
+use super::front::FRONT_SETTINGS;
+use super::grain::{compact, si};
 use crate::app::state::AppState;
 use crate::app::{setting_control, theme};
 use crate::contact::range::escape_speed;
-use crate::setting::{Group, Needs};
+use crate::setting::{About, Group, Needs};
 use crate::sim::{Settings, Stepper};
 use crate::world::Parameters;
-
-/// The paper's time steps, s.
-pub(crate) const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let index = state.selected;
@@ -22,32 +20,36 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let before = wanted.settings;
     let mut settings = before;
     stepper_switch(ui, &mut settings);
-    let gravity = state.world().and_then(|world| world.gravity);
-    let physics = start.physics();
-    let has_direction = physics.axes == 2 && gravity.is_some_and(|gravity| gravity != DVec2::ZERO);
-    for about in Parameters::ABOUT {
-        let has = match about.needs {
-            Needs::Nothing => true,
-            Needs::Friction => physics.friction,
-            Needs::Cohesion => physics.cohesion,
-            Needs::Direction => has_direction,
-        };
-        let Some(control) = about.control.filter(|_| has && before.stepper.reads(about.name))
-        else {
+    for about in shown_settings(state, &before) {
+        if FRONT_SETTINGS.contains(&about.name) {
             continue;
-        };
-        if let Some(rect) = setting_control::show(ui, about, &mut settings, start.settings()) {
-            state.note_control(control.symbol, rect);
         }
-        if about.name == "dt" {
-            time_step_buttons(ui, &mut settings.parameters.time_step_secs);
-        }
+        setting_control::show(ui, about, &mut settings, start.settings());
         ui.add_space(2.0);
     }
     if settings != before {
         state.change(index, settings);
     }
     derived(ui, state, &settings);
+}
+
+/// The settings of the law and the time step that mean something to the scene and that the stepper reads.
+pub(super) fn shown_settings(state: &AppState, settings: &Settings) -> Vec<&'static About> {
+    let Some(physics) = state.frame.start.as_ref().map(|start| start.physics()) else {
+        return Vec::new();
+    };
+    let gravity = state.world().and_then(|world| world.gravity);
+    let has_direction = physics.axes == 2 && gravity.is_some_and(|gravity| gravity != DVec2::ZERO);
+    let is_shown = |about: &&About| {
+        let has = match about.needs {
+            Needs::Nothing => true,
+            Needs::Friction => physics.friction,
+            Needs::Cohesion => physics.cohesion,
+            Needs::Direction => has_direction,
+        };
+        has && about.control.is_some() && settings.stepper.reads(about.name)
+    };
+    Parameters::ABOUT.iter().filter(is_shown).collect()
 }
 
 /// The ways to step; remedies that the chosen one does not take are left out.
@@ -73,23 +75,6 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     }
 }
 
-/// The paper's six values, one click away.
-fn time_step_buttons(ui: &mut Ui, time_step_secs: &mut f64) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 3.0;
-        ui.spacing_mut().button_padding.x = 2.0;
-        let width = (ui.available_width() - 5.0 * 3.0) / 6.0;
-        for value in PAPER_TIME_STEPS {
-            let text = RichText::new(format!("{value:e}")).size(11.5);
-            let button = egui::Button::selectable(*time_step_secs == value, text)
-                .min_size(egui::vec2(width, 19.0));
-            if ui.add(button).on_hover_text("A time step of the paper, s").clicked() {
-                *time_step_secs = value;
-            }
-        }
-    });
-}
-
 /// What the numbers mean together.
 fn derived(ui: &mut Ui, state: &AppState, settings: &Settings) {
     let parameters = &settings.parameters;
@@ -106,7 +91,7 @@ fn derived(ui: &mut Ui, state: &AppState, settings: &Settings) {
         row(
             "cohesive time Bond·Δt/√(d/g)",
             "What the time step does to cohesion, in one number (paper §3.3).",
-            format!("{:.3}", parameters.cohesive_time(diameter, g)),
+            compact(parameters.cohesive_time(diameter, g)),
         );
         row(
             "capture speed Bond·g·Δt",

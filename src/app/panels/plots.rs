@@ -11,7 +11,6 @@ use crate::sim::{Observables, QUANTITIES, Quantity};
 use crate::study::png::write_png;
 
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    header(ui, state);
     let data = data(ui, state);
     if let Some(time_secs) = draw(ui, &data) {
         state.live.send(Command::Seek(time_secs.clamp(0.0, state.frame.recorded_secs())));
@@ -36,14 +35,17 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
         quantities: QUANTITIES.iter().filter(|quantity| is_shown(state, quantity)).collect(),
         chosen: state.preferences.chosen_plot.clone(),
         now_secs: state.frame.time_secs(),
-        // An empty plot is as wide as a short run; a long one is seen as a whole.
-        until_secs: 0.2 * state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs),
+        until_secs: state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs),
     }
 }
 
+/// True where a quantity is chosen, or where nothing that is chosen says anything of what is open.
 fn is_shown(state: &AppState, quantity: &Quantity<Observables>) -> bool {
-    means_something(state, quantity)
-        && state.preferences.quantities.iter().any(|name| name == quantity.name)
+    let is_chosen = |quantity: &Quantity<Observables>| {
+        means_something(state, quantity)
+            && state.preferences.quantities.iter().any(|name| name == quantity.name)
+    };
+    is_chosen(quantity) || (means_something(state, quantity) && !QUANTITIES.iter().any(is_chosen))
 }
 
 /// True where a quantity says anything of what is open.
@@ -51,48 +53,56 @@ fn means_something(state: &AppState, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || state.slumps()
 }
 
-/// Points that a head in one row takes.
-const WIDE_HEAD: f32 = 480.0;
-
-fn header(ui: &mut Ui, state: &mut AppState) {
-    let is_narrow = ui.available_width() < WIDE_HEAD;
+/// The line above the plots: what folds them, and what other piles say beside the selected world.
+pub(crate) fn header(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Plots").heading());
-        if !is_narrow {
-            switches(ui, state);
+        let text = if state.preferences.plots { "▾ Plot" } else { "▸ Plot" };
+        let plots = ui.selectable_label(false, text).on_hover_text("Show or fold the plots");
+        state.note_control("Plots", plots.rect);
+        state.preferences.plots ^= plots.clicked();
+        let hint = state.about_ensemble();
+        let said = state.said_of_ensemble(state.selected);
+        if let (Some(said), Some(world)) = (said, state.world()) {
+            let text = format!("Δy {:.3}; {said}", world.snapshot.observables.slump);
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| files(ui, state));
     });
-    if is_narrow {
-        ui.horizontal_wrapped(|ui| switches(ui, state));
-    }
+}
+
+/// What is plotted, and what saves it.
+pub(super) fn choices(ui: &mut Ui, state: &mut AppState) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Plot");
+        for quantity in QUANTITIES {
+            if !means_something(state, quantity) {
+                continue;
+            }
+            let mut shown = is_shown(state, quantity);
+            if ui.toggle_value(&mut shown, quantity.name).changed() {
+                let chosen = &mut state.preferences.quantities;
+                chosen.retain(|name| name != quantity.name);
+                chosen.extend(shown.then(|| quantity.name.to_owned()));
+            }
+        }
+        ui.toggle_value(&mut state.preferences.chosen_plot.on, "y over x")
+            .on_hover_text("Any quantity that steps measure against any other.");
+    });
     let chosen = &mut state.preferences.chosen_plot;
     if chosen.on {
-        ui.horizontal(|ui| chosen.choose(ui));
+        ui.horizontal_wrapped(|ui| chosen.choose(ui));
+    }
+    ui.horizontal(|ui| files(ui, state));
+    if state.ensemble.is_possible() {
+        let hint = state.about_ensemble();
+        let switch = ui.checkbox(&mut state.preferences.ensemble, "Other piles, on idle cores");
+        state.note_control("other piles", switch.on_hover_text(&hint).rect);
     }
 }
 
-/// What is drawn.
-fn switches(ui: &mut Ui, state: &mut AppState) {
-    for quantity in QUANTITIES {
-        if !means_something(state, quantity) {
-            continue;
-        }
-        let mut shown = is_shown(state, quantity);
-        if ui.toggle_value(&mut shown, quantity.name).changed() {
-            let chosen = &mut state.preferences.quantities;
-            chosen.retain(|name| name != quantity.name);
-            chosen.extend(shown.then(|| quantity.name.to_owned()));
-        }
-    }
-    ui.toggle_value(&mut state.preferences.chosen_plot.on, "y over x")
-        .on_hover_text("Any quantity that steps measure against any other.");
-}
-
-/// From the right: what saves the plots, how they were thinned, and in the room that is left the other piles.
+/// What saves the plots, and how they were thinned.
 fn files(ui: &mut Ui, state: &mut AppState) {
     let stem = format!("{}-curves", super::see::file_stem(state));
-    if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
+    if ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked() {
         let data = data(ui, state);
         let size = state.preferences.picture_size;
         let (dark, texts) = (ui.visuals().dark_mode, state.texts(false));
@@ -104,7 +114,7 @@ fn files(ui: &mut Ui, state: &mut AppState) {
         });
     }
     let hint = "Save all observables of all worlds; a text beside the table says what they are of.";
-    if ui.button("CSV").on_hover_text(hint).clicked() {
+    if ui.button("Curves as CSV").on_hover_text(hint).clicked() {
         let worlds = state.frame.worlds.iter();
         let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
         let texts = state.texts(false);
@@ -116,23 +126,6 @@ fn files(ui: &mut Ui, state: &mut AppState) {
     }
     let strides = state.frame.worlds.iter().map(|world| world.curve.stride());
     if let Some(stride) = strides.max().filter(|&stride| stride > 1) {
-        ui.label(RichText::new(format!("one step in {stride}")).small().weak());
-    }
-    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| others(ui, state));
-}
-
-/// The switch of the other piles, and what they say beside the selected world.
-fn others(ui: &mut Ui, state: &mut AppState) {
-    if !state.ensemble.is_possible() {
-        return;
-    }
-    ui.separator();
-    let hint = state.about_ensemble();
-    let switch = ui.toggle_value(&mut state.preferences.ensemble, "other piles");
-    state.note_control("other piles", switch.on_hover_text(&hint).rect);
-    let said = state.said_of_ensemble(state.selected);
-    if let (Some(said), Some(world)) = (said, state.world()) {
-        let text = format!("Δy {:.3}; {said}", world.snapshot.observables.slump);
-        ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
+        ui.label(RichText::new(format!("plotted: one step in {stride}")).small().weak());
     }
 }

@@ -1,8 +1,9 @@
-//! Panel: which scene, how many grains, how fast; and the runs before.
+//! Panel: which scene and how many grains; the runs before; and what makes the run again.
 
-use egui::{Align, Button, ComboBox, RichText, Slider, Ui};
+use egui::{Align, Button, ComboBox, RichText, Ui};
 
 use super::compare::title_among;
+use super::grain::compact;
 use crate::app::budget;
 use crate::app::sharing::CHANGED;
 use crate::app::state::AppState;
@@ -13,8 +14,6 @@ use crate::solver::SolverChanges;
 
 /// Most grains that the panel offers; the command line takes more.
 const MOST_GRAINS: usize = 20_000;
-/// Ends of the speed slider, simulated time per time on the wall.
-const SPEEDS: [f64; 2] = [0.01, 10.0];
 
 /// Piles of that many grains cost enough to say so, and what was measured of just as many (`docs/runs.md`, new piles),
 /// s of one core.
@@ -42,13 +41,10 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     {
         new_pile(ui, state);
     }
-    speed(ui, state);
-    earlier_runs(ui, state);
-    command_line(ui, state);
 }
 
 /// What makes the run again without a window.
-fn command_line(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn command_line(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         let copy = ui.button("Copy command line").on_hover_text(
             "The command that computes the selected world from its start with the present settings, without a \
@@ -176,38 +172,11 @@ fn pile_like_this(state: &AppState, pile: &NewPile) -> Config {
     Config { solver, ..config }
 }
 
-fn speed(ui: &mut Ui, state: &mut AppState) {
-    let before = (state.preferences.speed, state.preferences.full_speed);
-    ui.horizontal(|ui| {
-        ui.label("Speed").on_hover_text("Simulated time per time on the wall.");
-        ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            let full = ui.toggle_value(&mut state.preferences.full_speed, "max");
-            let full = full.on_hover_text("As fast as the machine computes.");
-            state.note_control("max", full.rect);
-            let speed = format!("{:.2}×", state.preferences.speed);
-            let text = if state.preferences.full_speed { "      " } else { &speed };
-            ui.label(RichText::new(text).monospace());
-            ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(40.0);
-            let slider = Slider::new(&mut state.preferences.speed, SPEEDS[0]..=SPEEDS[1])
-                .logarithmic(true)
-                .show_value(false);
-            let response = ui.add(slider);
-            response.widget_info(|| egui::WidgetInfo::slider(true, before.0, "Speed"));
-            if response.changed() {
-                state.preferences.full_speed = false;
-            }
-        });
-    });
-    if before != (state.preferences.speed, state.preferences.full_speed) {
-        state.live.send(Command::SetPace(state.preferences.pace()));
-    }
-}
-
 /// Width of the fields of names, points.
 const NAME_WIDTH: f32 = 84.0;
 
 /// Earlier runs, to be gone back to, and the newest of them as a ghost; nothing where there are none.
-fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
     if state.frame.past.is_empty() {
         return;
     }
@@ -233,10 +202,12 @@ fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
                 name_field(ui, state, Some(run.number), &run.name);
                 let title = title(run);
                 let name = if run.name.is_empty() { &title } else { &run.name };
-                let text = format!("↶ {name}, {:.3} s", run.recorded_secs);
+                let text = format!("↶ {name}, {} s", compact(run.recorded_secs));
                 let back = ui.add(Button::new(RichText::new(text).size(11.5)).truncate());
-                let hint =
-                    format!("Back to it (the last: Ctrl Z): {title}, {:.3} s", run.recorded_secs);
+                let hint = format!(
+                    "Back to it (the last: Ctrl Z): {title}, {} s",
+                    compact(run.recorded_secs)
+                );
                 if back.on_hover_text(hint).clicked() {
                     state.live.send(Command::Return(run.number));
                 }
@@ -278,5 +249,8 @@ fn title(run: &PastRun) -> String {
 
 /// The run that shows as a ghost.
 pub(super) fn ghost(state: &AppState) -> Option<&PastRun> {
-    state.frame.past.last().filter(|_| state.preferences.ghost)
+    let count = state.frame.worlds.len();
+    // Of another comparison, a ghost would stand beside numbers that are not its own.
+    let is_alike = |run: &&PastRun| state.preferences.ghost && run.worlds.len() == count;
+    state.frame.past.last().filter(is_alike)
 }

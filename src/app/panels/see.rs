@@ -23,7 +23,7 @@ const COLOURS: [(ColourBy, &str); 5] = [
     (ColourBy::Coordination, "contacts"),
 ];
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn look(ui: &mut Ui, state: &mut AppState) {
     let style = &mut state.preferences.style;
     ui.horizontal(|ui| {
         let label = ui.label("Colour by");
@@ -64,11 +64,10 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
             ui.selectable_value(&mut state.preferences.theme, preference, name);
         }
     });
-    ui.separator();
-    pictures(ui, state);
 }
 
-fn pictures(ui: &mut Ui, state: &mut AppState) {
+/// What saves pictures and films.
+pub(super) fn pictures(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         let label = ui.label("Picture").on_hover_text("Size of saved pictures, pixels.");
         for side in 0..2 {
@@ -86,7 +85,6 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
         }
     });
     films(ui, state);
-    folder(ui, state);
 }
 
 /// The record as a video or an animation.
@@ -102,13 +100,11 @@ fn films(ui: &mut Ui, state: &mut AppState) {
         let [least, most] = VIDEO_RATES_HZ;
         let rate = egui::DragValue::new(&mut state.preferences.video_rate_hz).range(least..=most);
         ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
-        let hint = "Simulated seconds in a second of it: 1 is the pace of nature.";
-        let label = ui.label("pace ×").on_hover_text(hint);
-        let speed = egui::DragValue::new(&mut state.preferences.video_speed).range(1e-6..=1e6);
-        ui.add(speed.speed(0.01).max_decimals(6)).labelled_by(label.id);
+        let pace = format!("at the pace of watching, {}×", state.preferences.speed);
+        ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
-        let video_hint = "What was recorded of all worlds, or the stretch that Data names, as MP4. The run may go on meanwhile.";
+        let video_hint = "What was recorded of all worlds, or the stretch that is named below, as MP4. The run may go on meanwhile.";
         let gif_hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and larger files.";
         for (format, name, missing, hint) in [
             (FilmFormat::Video, "Save video", check_ffmpeg("given").err(), video_hint),
@@ -177,7 +173,7 @@ fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) 
         picture: scene_picture(state, style, size, false),
         slumps: state.slumps(),
         rate_hz,
-        speed: state.preferences.video_speed,
+        speed: state.preferences.speed,
         stretch: state.exports.data.stretch,
         folder: state.preferences.folder.clone(),
         stem: file_stem(state),

@@ -1,7 +1,8 @@
 //! Panel: how each step is solved, and how well that went.
 
-use egui::{ComboBox, RichText, Ui};
+use egui::{CollapsingHeader, ComboBox, RichText, Ui};
 
+use super::grain::compact;
 use crate::app::budget::{BUDGETS, Budget};
 use crate::app::state::AppState;
 use crate::app::{setting_control, theme};
@@ -18,32 +19,35 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     };
     let before = wanted.settings;
     let mut settings = before;
-    if before.stepper.uses_method() {
-        if let Some(world) = state.world() {
-            budget_buttons(ui, &mut settings.solver, &world.snapshot.surroundings);
-        }
-        method_controls(ui, &mut settings, start.settings());
+    if before.stepper.uses_method()
+        && let Some(world) = state.world()
+    {
+        budget_buttons(ui, &mut settings, &world.snapshot.surroundings);
     }
-    if before.stepper.reads("warm-start") {
-        setting_control::show(ui, about("warm-start"), &mut settings, start.settings());
-    }
-    if before.stepper.reads("friction-model") && start.physics().friction {
-        friction_controls(ui, &mut settings, start.settings());
-    }
-    if before.stepper.uses_method() {
-        remedy_boxes(ui, &mut settings, start.settings());
-    }
-    let robust = ui.button("Robust").on_hover_text(
-        "Newton to 1e-8, overlap pushed out, shocks in sequence, no bounce below 2 g Δt, fast grains \
-         in pieces of a step: hard scenes hold, and the paper's effects of Δt go.",
-    );
-    if robust.clicked() {
-        Preset::Robust.apply_to_settings(&mut settings);
-    }
+    readings(ui, state);
+    CollapsingHeader::new("Expert").show_unindented(ui, |ui| {
+        expert(ui, &mut settings, start.settings(), start.physics().friction);
+    });
     if settings != before {
         state.change(index, settings);
     }
-    readings(ui, state);
+}
+
+/// What few need to touch.
+fn expert(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
+    let stepper = settings.stepper;
+    if stepper.uses_method() {
+        method_controls(ui, settings, start);
+    }
+    if stepper.reads("warm-start") {
+        setting_control::show(ui, about("warm-start"), settings, start);
+    }
+    if stepper.reads("friction-model") && has_friction {
+        friction_controls(ui, settings, start);
+    }
+    if stepper.uses_method() {
+        remedy_boxes(ui, settings, start);
+    }
 }
 
 /// The declaration of a setting of the solver.
@@ -123,17 +127,25 @@ fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 }
 
 /// Care and speed, one click away.
-fn budget_buttons(ui: &mut Ui, solver: &mut SolverSettings, surroundings: &Surroundings) {
+fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundings) {
     ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
         for effort in BUDGETS {
             let Budget { name, hint, .. } = effort;
-            let settings = effort.among(surroundings);
-            let button = egui::Button::selectable(*solver == settings, name);
+            let solver = effort.among(surroundings);
+            let button = egui::Button::selectable(settings.solver == solver, name);
             let added = ui.add_enabled(effort.is_to_be_had(surroundings), button);
             let added = added.on_disabled_hover_text("Not where a force drives a wall.");
             if added.on_hover_text(hint).clicked() {
-                *solver = settings;
+                settings.solver = solver;
             }
+        }
+        let robust = ui.button("Robust").on_hover_text(
+            "Newton to 1e-8, overlap pushed out, shocks in sequence, no bounce below 2 g Δt, fast grains \
+             in pieces of a step: hard scenes hold, and the paper's effects of Δt go.",
+        );
+        if robust.clicked() {
+            Preset::Robust.apply_to_settings(settings);
         }
     });
 }
@@ -195,7 +207,8 @@ fn readings(ui: &mut Ui, state: &AppState) {
 
 /// How far velocities may be off, rounded up.
 fn within(last: &Observables) -> String {
-    format!("velocities within {:.2} mm/s", (1e5 * last.velocity_error).ceil().max(1.0) / 100.0)
+    let rounded_up = (1e5 * last.velocity_error).ceil().max(1.0) / 100.0;
+    format!("velocities within {} mm/s", compact(rounded_up))
 }
 
 /// How the last step was solved; the status bar counts those that were not solved as asked.

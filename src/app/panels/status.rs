@@ -1,7 +1,8 @@
-//! The status bar: where the run is, how fast, how well.
+//! The status bar: how fast, whether to trust it, what went wrong, and the ways to everything else.
 
-use egui::{Align, Color32, Label, Layout, Rect, RichText, Ui};
+use egui::{Align, Label, Layout, Rect, RichText, Ui};
 
+use super::{Page, trust};
 use crate::app::budget::FAST;
 use crate::app::state::AppState;
 use crate::app::theme;
@@ -11,69 +12,56 @@ use crate::sim::AlarmKind;
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 12.0;
-        if let Some(world) = state.world() {
-            let last = &world.snapshot.observables;
-            let mono = |text: String| RichText::new(text).monospace();
-            ui.label(mono(format!("t = {:.4} s", last.time_secs))).on_hover_text("Simulated time");
-            ui.label(mono(format!("step {}", last.step)));
-            if state.frame.playing && state.frame.steps_per_sec > 0.0 {
-                ui.label(mono(format!("{:.0} steps/s", state.frame.steps_per_sec)))
-                    .on_hover_text("Steps of all worlds together");
-                let factor = state.frame.real_time_factor;
-                let text = mono(format!("{factor:.2}× real time"));
-                let is_behind =
-                    !state.preferences.full_speed && factor < 0.8 * state.preferences.speed;
-                let warning = theme::warning(ui.visuals().dark_mode);
-                ui.label(if is_behind { text.color(warning) } else { text });
-            }
-            convergence(ui, state, world);
-            if state.frame.stored {
-                ui.label(RichText::new("stored").weak())
-                    .on_hover_text("What is recorded is shown as it was; nothing is computed.");
-            }
-            if state.frame.seeking {
-                ui.label(RichText::new("computing that moment").weak());
-            }
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| messages(ui, state));
+        ui.spacing_mut().item_spacing.x = 10.0;
+        trust::button(ui, state);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ways(ui, state);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                pace(ui, state);
+                messages(ui, state);
+            });
+        });
     });
 }
 
-/// How many steps met the tolerance: the last one, and those before.
-fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
-    let dark = ui.visuals().dark_mode;
-    let last = || state.frame.worlds.iter().map(|world| &world.snapshot.observables);
-    let (mark, colour) = if last().all(|row| row.step == 0) {
-        ("○ no step yet", ui.visuals().weak_text_color())
-    } else if last().all(|row| row.converged) {
-        ("● converged", theme::good(dark))
-    } else if last().all(|row| row.converged || row.fell_back == Some(true)) {
-        ("◆ fell back", theme::warning(dark))
-    } else {
-        ("▲ not converged", theme::warning(dark))
-    };
-    ui.label(RichText::new(mark).color(colour)).on_hover_text(
-        "Whether the last step met the tolerance within the sweep limit, or was solved under bounds of \
-         friction instead: see Solver",
-    );
-    if world.unconverged_steps > 0 {
-        let steps = if world.unconverged_steps == 1 { "step" } else { "steps" };
-        let instead = match world.fallback_steps {
-            0 => String::new(),
-            fallback_steps => format!(", {fallback_steps} fell back"),
-        };
-        let text = format!("{} {steps} did not converge{instead}", world.unconverged_steps);
-        ui.label(RichText::new(text).weak()).on_hover_text("Up to the moment that is shown");
+/// The ways to the pages and to the keys, from the right.
+fn ways(ui: &mut Ui, state: &mut AppState) {
+    ui.toggle_value(&mut state.shown.help, "Help").on_hover_text("All keys (H)");
+    let page = state.preferences.page;
+    let save = ui.selectable_label(page == Some(Page::Save), "Save…");
+    state.note_control("save", save.rect);
+    let hint = "Pictures, films, data, sessions, links";
+    if save.on_hover_text(hint).clicked() {
+        let is_open = page == Some(Page::Save);
+        state.preferences.page = (!is_open).then_some(Page::Save);
+    }
+    let is_open = page.is_some_and(|page| page != Page::Save);
+    let text = if is_open { "More ▴" } else { "More ▾" };
+    let more = ui.selectable_label(is_open, text);
+    state.note_control("more", more.rect);
+    let hint = "Scenes, laws and solvers, comparisons, the look";
+    if more.on_hover_text(hint).clicked() {
+        state.preferences.page = (!is_open).then_some(Page::Pile);
     }
 }
 
+/// How fast time passes, while it does.
+fn pace(ui: &mut Ui, state: &AppState) {
+    let frame = &state.frame;
+    if frame.seeking {
+        ui.label(RichText::new("computing that moment").weak());
+    } else if frame.stored && frame.playing {
+        ui.label(RichText::new("stored").weak())
+            .on_hover_text("What is recorded is shown as it was; nothing is computed.");
+    } else if frame.playing && frame.steps_per_sec > 0.0 {
+        let text = format!("{:.0} steps/s, {:.2}×", frame.steps_per_sec, frame.real_time_factor);
+        ui.label(RichText::new(text).weak())
+            .on_hover_text("Steps of all worlds together, and simulated time per time on the wall");
+    }
+}
+
+/// What was just done, or what went wrong. In a lesson that shows what goes wrong, nothing does.
 fn messages(ui: &mut Ui, state: &mut AppState) {
-    ui.toggle_value(&mut state.shown.help, "Help (H)");
-    let plots = ui.toggle_value(&mut state.preferences.plots, "Plots");
-    state.note_control("Plots", plots.on_hover_text("Show or hide the plots").rect);
-    ui.toggle_value(&mut state.preferences.sidebar, "Panels")
-        .on_hover_text("Show or hide the panels");
     if let Some((notice, left)) = state.notice() {
         let (text, colour) = (notice.text.clone(), notice.colour(ui));
         ui.ctx().request_repaint_after_secs(left);
@@ -82,38 +70,40 @@ fn messages(ui: &mut Ui, state: &mut AppState) {
     }
     let warning = theme::warning(ui.visuals().dark_mode);
     if let Some(failure) = state.frame.worlds.iter().find_map(|world| world.failure.clone()) {
-        message(ui, &format!("{failure}. Drag the timeline back, or reset."), warning);
-    } else if let Some(alarm) = alarm(state) {
+        message(ui, &format!("{failure}. Drag the timeline back, or start again."), warning);
+    } else if let Some(alarm) = alarms(state).into_iter().next().filter(|_| !state.touring) {
         let rect = message(ui, &format!("▲ {alarm}"), warning);
         state.note_control("alarm", rect);
     }
 }
 
 /// Shows a line in the room that is left, and all of it to whoever points at it.
-fn message(ui: &mut Ui, text: &str, colour: Color32) -> Rect {
-    let label = Label::new(RichText::new(text).color(colour)).truncate();
-    ui.add(label).on_hover_text(text).rect
+fn message(ui: &mut Ui, text: &str, colour: egui::Color32) -> Rect {
+    // A label that is cut shows the whole by itself.
+    ui.add(Label::new(RichText::new(text).color(colour)).truncate()).rect
 }
 
-/// The newest alarm of the selected world, or of any other, with its title where worlds are compared; one of the
-/// present settings before those of earlier ones.
-fn alarm(state: &AppState) -> Option<String> {
-    let newest = |index: usize| {
-        let world = state.frame.worlds.get(index)?;
+/// The alarms of the selected world, then those of others with their titles; in each, those of the present settings
+/// before earlier ones, the newest first.
+pub(super) fn alarms(state: &AppState) -> Vec<String> {
+    let of_world = |index: usize| {
+        let world = &state.frame.worlds[index];
         let is_news = |alarm: &&WorldAlarm| !is_asked_for(alarm, world);
-        let alarms = || world.alarms.iter().filter(is_news).rev();
-        let alarm = alarms().find(|alarm| !alarm.is_earlier).or_else(|| alarms().next())?;
-        Some(if state.compares() {
-            format!("{}: {}", super::compare::title(state, index), alarm.text)
-        } else {
-            alarm.text.to_string()
-        })
+        let mut alarms: Vec<&WorldAlarm> = world.alarms.iter().rev().filter(is_news).collect();
+        alarms.sort_by_key(|alarm| alarm.is_earlier);
+        let said = move |alarm: &WorldAlarm| match state.compares() {
+            true => format!("{}: {}", super::compare::title(state, index), alarm.text),
+            false => alarm.text.to_string(),
+        };
+        alarms.into_iter().map(said).collect::<Vec<_>>()
     };
-    newest(state.selected).or_else(|| (0..state.frame.worlds.len()).find_map(newest))
+    let others = (0..state.frame.worlds.len()).filter(|&index| index != state.selected);
+    let selected = (!state.frame.worlds.is_empty()).then_some(state.selected);
+    selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
 /// True where an alarm says what was chosen with open eyes: so many sweeps a step, solved or not. How many steps were
-/// not solved is told beside it in any case.
+/// not solved is told under "Can I trust this?" in any case.
 fn is_asked_for(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let fast = FAST.among(&world.snapshot.surroundings);
     alarm.kind == AlarmKind::SweepLimit && world.controls.settings.solver == fast

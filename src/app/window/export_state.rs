@@ -50,8 +50,8 @@ impl StateFile {
             // Those of the selected world that have come to their end, and threads that compute them.
             "other_piles": state.ensemble.summary(state.selected).map_or(0, |it| it.band.count),
             "other_threads": state.ensemble.threads(),
-            // From 1; 0 where the tour is not being taken.
-            "station": if state.touring { state.preferences.tour.at + 1 } else { 0 },
+            // From 1; 0 where none is being taken.
+            "lesson": if state.touring { state.preferences.lesson.at + 1 } else { 0 },
             "steps_per_sec": state.frame.steps_per_sec,
             // How often a graphics device was opened.
             "devices": devices,

@@ -38,7 +38,7 @@ const LEAST_SIZE: [f64; 2] = [640.0, 480.0];
 /// Opens what a window begins with.
 pub(super) type Opener = Box<dyn FnOnce(&mut AppState)>;
 
-/// What the command line asks for; else the tour, until it is left, or the last scene, or the default one
+/// What the command line asks for; else the lessons, until they are left, or the last scene, or the default one
 /// where that is gone.
 ///
 /// # Errors
@@ -69,8 +69,8 @@ pub(super) fn first(
         asked.change_state(&mut saved)?;
         return Ok(Box::new(move |state| state.load_run(saved)));
     }
-    if asked.is_empty() && preferences.tour.on {
-        let at = preferences.tour.at;
+    if asked.is_empty() && preferences.lesson.on {
+        let at = preferences.lesson.at;
         return Ok(Box::new(move |state| state.visit(at)));
     }
     // A pile is made on the solver's thread; everything else of a scene is checked before a window

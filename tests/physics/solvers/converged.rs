@@ -152,6 +152,32 @@ fn no_step_is_called_solved_that_is_not() {
     assert!(solved > 1000, "{solved} steps were called solved");
 }
 
+/// The steps of `range` are pieces with problems of their own, which world data of whole steps cannot judge: what is told of
+/// them is the largest residual of all pieces, by Coulomb's law or by the model that was solved.
+#[test]
+fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
+    let is_by_residual = |solver: &SolverSettings| solver.stop == StopTest::Residual;
+    let solvers = solvers().into_iter().filter(is_by_residual);
+    let (mut solved, mut unsolved) = (0, 0);
+    for (scene, solver) in pairs(scenes(false), solvers.collect::<Vec<_>>()) {
+        let name = format!("{}, {solver:?}", scene.name);
+        // Few sweeps, so that some pieces are not solved.
+        let solver = SolverSettings { max_sweeps: 20, fallback: Fallback::None, ..solver };
+        let Ok(mut run) = Scene { solver, stepper: Stepper::Range, ..scene }.simulation() else {
+            continue;
+        };
+        for step in 1..=20 {
+            let Ok(&row) = run.step() else { break };
+            let left = row.model_residual.unwrap_or(row.residual);
+            let is_small = left <= solver.tolerance * (1.0 + 1e-9);
+            assert!(is_small || !row.converged, "step {step}: {left:e} is left: {name}");
+            solved += usize::from(row.converged);
+            unsolved += usize::from(!row.converged);
+        }
+    }
+    assert!(solved > 1000 && unsolved > 50, "{solved} solved, {unsolved} not");
+}
+
 #[test]
 #[ignore = "minutes: all scenes"]
 fn no_step_of_any_scene_is_called_solved_that_is_not() {

@@ -193,6 +193,36 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     assert!(refused > 90, "many were damaged where it shows: {refused}");
 }
 
+/// A scene takes some sixty times its text in memory.
+#[test]
+fn a_text_that_nobody_means_is_refused_before_it_is_parsed() {
+    let folder = folder();
+    let path = folder.path().join("huge.toml");
+    let file = std::fs::File::create(&path).expect("a file");
+    file.set_len((32 << 20) + 1).expect("a hole");
+    let said = refusal(&["--scene", text(&path)]);
+    assert!(said.contains("has more than 33554432 bytes, but must have no more"), "{said}");
+}
+
+/// A decoder that is out of step with what was looked at takes room for anything: such a bit once asked for 24 GiB.
+#[test]
+fn parquet_with_any_bit_turned_is_read_or_refused() {
+    let folder = folder();
+    let path = folder.path().join("discs.parquet");
+    let truth = Columnar::default();
+    let lie = Columnar { rows: 1 << 28, group_rows: 1 << 28, ..truth.clone() };
+    let mut refused = 0;
+    for whole in [truth.bytes(), lie.bytes()] {
+        for bit in 0..8 * whole.len() {
+            let mut bytes = whole.clone();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            write(&path, &bytes);
+            refused += usize::from(read_grains(&path, None).is_err());
+        }
+    }
+    assert!(refused > 2_000, "{refused}");
+}
+
 /// Each of these once took the program down: by memory, by its stack, or by a panic of the decoder.
 #[test]
 fn small_parquet_that_lies_is_refused_in_a_sentence() {

@@ -33,7 +33,7 @@ pub(crate) struct CauseRow {
 /// Whether a number is one of the grains and their law, rather than of the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Trust {
+pub enum Trust {
     /// Neither the method nor the choice of a law moves it by more than what was asked for.
     Yes,
     /// The method does not; the choice of a law does, or that is not known yet.
@@ -45,7 +45,8 @@ pub(crate) enum Trust {
 }
 
 impl Trust {
-    pub(crate) fn words(self) -> &'static str {
+    /// The verdict as it is told.
+    pub fn words(self) -> &'static str {
         match self {
             Self::Yes => "yes",
             Self::Mostly => "mostly",
@@ -297,7 +298,8 @@ mod tests {
         budget_of(&runs, ended, &design, (0, &quantity), None)
     }
 
-    const FREE: Limits = Limits { cost_secs: f64::INFINITY, within: Some(0.05) };
+    const FREE: Limits =
+        Limits { cost_secs: f64::INFINITY, within: Some(0.05), shows_progress: false };
     const BUDGETS: u64 = 400;
 
     fn share(holds: impl Fn(u64) -> bool) -> f64 {
@@ -398,7 +400,7 @@ mod tests {
 
     #[test]
     fn a_spent_time_is_told_with_the_widest_interval() {
-        let limits = Limits { cost_secs: 60.0, within: Some(1e-3) };
+        let limits = Limits { within: Some(1e-3), cost_secs: 60.0, ..FREE };
         let budget = made_up(1, 0.05, limits, &|_| 0.0);
         assert!(
             budget.answer.contains("The time was spent: the widest interval, of"),

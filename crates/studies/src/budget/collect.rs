@@ -38,6 +38,8 @@ pub(super) struct Limits {
     pub cost_secs: f64,
     /// Half the width of every interval, in the quantity's unit.
     pub within: Option<f64>,
+    /// True where a bar on stderr shows how far it is.
+    pub shows_progress: bool,
 }
 
 /// Why no more was computed.
@@ -169,7 +171,7 @@ pub(super) fn collect(
 ) -> Result<(Runs, Ended)> {
     let mut runs = Runs::new(costs, quantities);
     let first = |series: usize| (0..FIRST).map(move |start| Job { series, start });
-    take(&mut runs, first(0).collect(), run)?;
+    take(&mut runs, first(0).collect(), limits.shows_progress, run)?;
     runs.within = (0..quantities)
         .map(|quantity| limits.within.unwrap_or_else(|| width(&runs, quantity)))
         .collect();
@@ -188,7 +190,7 @@ pub(super) fn collect(
                 Err(ended) => return Ok((runs, ended)),
             }
         }
-        take(&mut runs, jobs, run)?;
+        take(&mut runs, jobs, limits.shows_progress, run)?;
     }
 }
 
@@ -251,20 +253,21 @@ fn widened(runs: &Runs, left_secs: f64) -> std::result::Result<Vec<Job>, Ended> 
 fn take(
     runs: &mut Runs,
     mut jobs: Vec<Job>,
+    shows_progress: bool,
     run: &(impl Fn(Job) -> Result<Ran> + Sync),
 ) -> Result<()> {
     let cost = |job: &Job| if runs.all[0].is_empty() { 1.0 } else { runs.secs_a_run(job.series) };
     jobs.sort_by(|one, other| cost(other).total_cmp(&cost(one)));
-    let progress = Progress::new("budget", jobs.len() as u64);
+    let progress = shows_progress.then(|| Progress::new("budget", jobs.len() as u64));
     let done: Result<Vec<(Job, Ran)>> = jobs
         .into_par_iter()
         .map(|job| {
             let ran = run(job)?;
-            progress.advance(1);
+            progress.iter().for_each(|progress| progress.advance(1));
             Ok((job, ran))
         })
         .collect();
-    progress.finish();
+    progress.iter().for_each(Progress::finish);
     let mut done = done?;
     done.sort_by_key(|(job, _)| (job.series, job.start));
     for (job, ran) in done {

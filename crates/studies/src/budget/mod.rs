@@ -16,6 +16,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+pub use self::answer::Trust;
 use self::answer::{Design, QuantityBudget, budget_of};
 use self::causes::variants;
 use self::collect::{Ended, Job, Limits, Ran, collect};
@@ -65,6 +66,11 @@ pub struct ErrorBudget {
 }
 
 impl ErrorBudget {
+    /// The verdict on the first quantity, and its answer in words.
+    pub fn first_answer(&self) -> Option<(Trust, String)> {
+        self.quantities.first().map(|one| (one.trust, one.answer.clone()))
+    }
+
     /// All of it, as `budget.json` has it.
     ///
     /// # Errors
@@ -84,7 +90,8 @@ const QUANTITY: &str = "slump";
 /// Names the quantity, the time or the setting that is not allowed, or the folder that cannot be written; and where a pile
 /// does not come to rest.
 pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
-    let budget = made(options, folder, |_| ControlFlow::Continue(()))?;
+    let go_on = |_: &ErrorBudget| ControlFlow::Continue(());
+    let budget = made_showing(true, options, folder, &folder.join("states"), go_on)?;
     report::write(&budget, folder)?;
     for one in &budget.quantities {
         print_text(format!("{}\n\n", one.answer));
@@ -94,13 +101,25 @@ pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     Ok(budget)
 }
 
-/// The same without files but those that it goes on from. `watch` has each stage of it, and ends it by breaking.
+/// The same without files but those that it goes on from; initial states of piles lie in `states`. `watch` has each stage
+/// of it, and ends it by breaking.
 ///
 /// # Errors
 /// As [`budget`].
 pub fn made(
     options: &BudgetOptions,
     folder: &Path,
+    states: &Path,
+    watch: impl FnMut(&ErrorBudget) -> ControlFlow<()>,
+) -> Result<ErrorBudget> {
+    made_showing(false, options, folder, states, watch)
+}
+
+fn made_showing(
+    shows_progress: bool,
+    options: &BudgetOptions,
+    folder: &Path,
+    states: &Path,
     mut watch: impl FnMut(&ErrorBudget) -> ControlFlow<()>,
 ) -> Result<ErrorBudget> {
     let BudgetOptions { config, quantities, within, cost_secs, .. } = options;
@@ -116,7 +135,7 @@ pub fn made(
         )?;
     }
     check_writable("out", folder)?;
-    let starts = Starts::of(config, &folder.join("states"))?;
+    let starts = Starts::of(config, states)?;
     let window = window_of(options, &starts)?;
     let variants = variants(&starts.scene, starts.pile.as_ref(), starts.resizes());
     let runner: Runner<RunValues> = Runner::open("budget", folder, "budget")?;
@@ -135,7 +154,7 @@ pub fn made(
     };
     let costs = [1.0].into_iter().chain(variants.iter().map(|variant| variant.cost)).collect();
     let cost_secs = cost_secs * rayon::current_num_threads() as f64;
-    let limits = Limits { cost_secs, within: *within };
+    let limits = Limits { cost_secs, within: *within, shows_progress };
     let settings = starts.scene.settings();
     let design = Design {
         variants: &variants,

@@ -27,9 +27,155 @@ type Checked<T> = Result<T, String>;
 /// A value, as far as it matters here.
 enum Value {
     Whole(i64),
+    Text,
+    Switch,
     List(Vec<Value>),
     Fields(Vec<(i64, Value)>),
     Other,
+}
+
+/// What a decoder takes a value for by the number of its field, whatever kind the file says that it is of. Where the two
+/// differ, a decoder is out of step, and reads anything as anything.
+enum Shape {
+    Whole,
+    Text,
+    Switch,
+    /// A byte, or an eight-byte number.
+    Plain,
+    List(&'static Shape),
+    Fields(&'static [(i64, Shape)]),
+    /// Of no table of discs: keys and maps.
+    Refused,
+}
+
+use Shape::{Fields, List, Plain, Refused, Switch, Text, Whole};
+
+const STATISTICS: Shape = Fields(&[
+    (1, Text),
+    (2, Text),
+    (3, Whole),
+    (4, Whole),
+    (5, Text),
+    (6, Text),
+    (7, Switch),
+    (8, Switch),
+]);
+const TIME: Shape = Fields(&[(1, Switch), (2, Fields(&[]))]);
+const LOGICAL_TYPE: Shape = Fields(&[
+    (5, Fields(&[(1, Whole), (2, Whole)])),
+    (7, TIME),
+    (8, TIME),
+    (10, Fields(&[(1, Plain), (2, Switch)])),
+    (16, Refused),
+    (17, Refused),
+    (18, Refused),
+]);
+const PAIR: Shape = Fields(&[(1, Text), (2, Text)]);
+const SORTED: Shape = Fields(&[(1, Whole), (2, Switch), (3, Switch)]);
+const PAGE_COUNT: Shape = Fields(&[(1, Whole), (2, Whole), (3, Whole)]);
+const SIZES: Shape = Fields(&[(1, Whole), (2, List(&Whole)), (3, List(&Whole))]);
+const COLUMN: Shape = Fields(&[
+    (1, Whole),
+    (2, List(&Whole)),
+    (3, List(&Text)),
+    (4, Whole),
+    (5, Whole),
+    (6, Whole),
+    (7, Whole),
+    (8, List(&PAIR)),
+    (9, Whole),
+    (10, Whole),
+    (11, Whole),
+    (12, STATISTICS),
+    (13, List(&PAGE_COUNT)),
+    (14, Whole),
+    (15, Whole),
+    (16, SIZES),
+    (17, Refused),
+]);
+const CHUNK: Shape = Fields(&[
+    (1, Text),
+    (2, Whole),
+    (3, COLUMN),
+    (4, Whole),
+    (5, Whole),
+    (6, Whole),
+    (7, Whole),
+    (8, Refused),
+    (9, Text),
+]);
+const ROW_GROUP: Shape = Fields(&[
+    (1, List(&CHUNK)),
+    (2, Whole),
+    (3, Whole),
+    (4, List(&SORTED)),
+    (5, Whole),
+    (6, Whole),
+    (7, Whole),
+]);
+const SCHEMA_ELEMENT: Shape = Fields(&[
+    (1, Whole),
+    (2, Whole),
+    (3, Whole),
+    (4, Text),
+    (5, Whole),
+    (6, Whole),
+    (7, Whole),
+    (8, Whole),
+    (9, Whole),
+    (10, LOGICAL_TYPE),
+]);
+const FOOTER: Shape = Fields(&[
+    (1, Whole),
+    (2, List(&SCHEMA_ELEMENT)),
+    (3, Whole),
+    (4, List(&ROW_GROUP)),
+    (5, List(&PAIR)),
+    (6, Text),
+    (7, List(&Fields(&[]))),
+    (8, Refused),
+    (9, Text),
+]);
+const PAGE_HEADER: Shape = Fields(&[
+    (1, Whole),
+    (2, Whole),
+    (3, Whole),
+    (4, Whole),
+    (5, Fields(&[(1, Whole), (2, Whole), (3, Whole), (4, Whole), (5, STATISTICS)])),
+    (6, Fields(&[])),
+    (7, Fields(&[(1, Whole), (2, Whole), (3, Switch)])),
+    (
+        8,
+        Fields(&[
+            (1, Whole),
+            (2, Whole),
+            (3, Whole),
+            (4, Whole),
+            (5, Whole),
+            (6, Whole),
+            (7, Switch),
+            (8, STATISTICS),
+        ]),
+    ),
+]);
+
+impl Shape {
+    /// Whether a value is of this shape; what a decoder does not know may be anything, and be there once.
+    fn fits(&self, value: &Value) -> bool {
+        match (self, value) {
+            (Whole, Value::Whole(_))
+            | (Text, Value::Text)
+            | (Switch, Value::Switch)
+            | (Plain, Value::Other) => true,
+            (List(shape), Value::List(items)) => items.iter().all(|item| shape.fits(item)),
+            (Fields(shapes), Value::Fields(fields)) => fields.iter().all(|(id, value)| {
+                let shape = shapes.iter().find(|(known, _)| known == id);
+                let is_single = fields.iter().filter(|(other, _)| other == id).count() == 1;
+                is_single && shape.is_none_or(|(_, shape)| shape.fits(value))
+            }),
+            _ => false,
+        }
+    }
 }
 
 impl Value {
@@ -86,9 +232,12 @@ impl Reader<'_> {
             if head == 0 {
                 return Ok(Value::Fields(fields));
             }
+            if head & 15 == 0 {
+                return Err("has a header of kind 0".into());
+            }
             id = if head >> 4 == 0 { self.whole()? } else { id.wrapping_add(i64::from(head >> 4)) };
             // Whether it is so is in the kind.
-            let value = if head & 15 < 3 { Value::Other } else { self.value(head & 15, depth)? };
+            let value = if head & 15 < 3 { Value::Switch } else { self.value(head & 15, depth)? };
             fields.push((id, value));
         }
     }
@@ -100,7 +249,7 @@ impl Reader<'_> {
             7 => self.skip(8).map(|()| Value::Other),
             8 => {
                 let length = self.varint()?;
-                self.skip(length).map(|()| Value::Other)
+                self.skip(length).map(|()| Value::Text)
             }
             9 | 10 => self.list(depth),
             12 => self.structure(depth - 1),
@@ -121,6 +270,7 @@ impl Reader<'_> {
 /// Looks at the footer of a file of so many bytes.
 pub(super) fn check_footer(footer: &[u8], bytes: u64) -> Checked<()> {
     let footer = Reader(footer).structure(MOST_DEPTH)?;
+    check_shape(&FOOTER, &footer)?;
     let Some(Value::List(schema)) = footer.field(2) else { return Err("has no schema".into()) };
     // Children that are still to come, of each group that the element is in.
     let mut open: Vec<i64> = vec![1];
@@ -147,9 +297,15 @@ pub(super) fn check_footer(footer: &[u8], bytes: u64) -> Checked<()> {
     }
     let most = FREE_ROWS.max(i64::try_from(bytes).unwrap_or(i64::MAX));
     match footer.whole(3) {
-        Some(rows) if rows > most => Err(format!("has {rows} rows in {bytes} bytes")),
-        _ => Ok(()),
+        Some(rows) if rows <= most => Ok(()),
+        Some(rows) => Err(format!("has {rows} rows in {bytes} bytes")),
+        None => Err("has no number of rows".into()),
     }
+}
+
+fn check_shape(shape: &Shape, header: &Value) -> Checked<()> {
+    let refuse = || "has a header with a field of another kind than it is of".to_owned();
+    shape.fits(header).then_some(()).ok_or_else(refuse)
 }
 
 /// Looks at all pages of a column; `bytes` are those of the column in the file.
@@ -157,6 +313,7 @@ pub(super) fn check_pages(bytes: &[u8]) -> Checked<()> {
     let mut rest = Reader(bytes);
     while !rest.0.is_empty() {
         let header = rest.structure(MOST_DEPTH)?;
+        check_shape(&PAGE_HEADER, &header)?;
         let (Some(unpacked), Some(packed)) = (header.whole(2), header.whole(3)) else {
             return Err("has a page without its size".into());
         };

@@ -1,0 +1,226 @@
+//! "Can I trust this?": one word on the run that is shown, and the list behind it: how its steps were solved, what went
+//! wrong, what other starts come to, and an error budget that idle cores compute while the list is open.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use egui::{Align2, RichText, Ui};
+
+use super::grain::compact;
+use super::status::alarms;
+use crate::app::ensemble::on_idle_cores;
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::app::work::Work;
+use crate::config::Config;
+use crate::error::{Error, Result};
+use crate::live::WorldFrame;
+use crate::output::counted;
+use crate::sim::AlarmKind;
+use crate::study::{BudgetOptions, Trust, made_budget};
+
+/// Time that a budget may take of the idle cores, s.
+const COST_SECS: f64 = 300.0;
+/// Of other scenes than heaps, what a budget is of.
+const OTHERWISE: &str = "mean(kinetic_energy)";
+/// Part of the steps up to which unsolved ones leave the rest worth something.
+const FEW: f64 = 0.01;
+
+/// The budget of a run, or what there is of it.
+pub(crate) struct RunBudget {
+    /// What it is of: the command line that the run is made by.
+    of: String,
+    /// Its verdict and paragraph.
+    told: Arc<Mutex<Option<(Trust, String)>>>,
+    work: Option<Work<()>>,
+    /// Why there is none.
+    failure: Option<String>,
+}
+
+/// The word on the run that is shown.
+pub(super) fn word(state: &AppState) -> Trust {
+    let Some(world) = state.world() else { return Trust::NotKnownYet };
+    let is_bad = |kind| world.alarms.iter().any(|alarm| alarm.kind == kind);
+    let steps = world.snapshot.observables.step.max(1);
+    let unsolved = world.unconverged_steps.saturating_sub(world.fallback_steps) as f64;
+    if world.failure.is_some()
+        || is_bad(AlarmKind::NotFinite)
+        || is_bad(AlarmKind::GrainLost)
+        || unsolved > FEW * steps as f64
+    {
+        return Trust::No;
+    }
+    of_budget(state).map_or(Trust::NotKnownYet, |(trust, _)| trust)
+}
+
+/// What the budget says, where there is one of the present settings.
+fn of_budget(state: &AppState) -> Option<(Trust, String)> {
+    let budget = state.budget.as_ref()?;
+    let told = budget.told.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+    (state.command_line().as_ref() == Some(&budget.of)).then_some(told)
+}
+
+/// The word in the status bar, which opens the list.
+pub(super) fn button(ui: &mut Ui, state: &mut AppState) {
+    let trust = word(state);
+    let dark = ui.visuals().dark_mode;
+    let colour = match trust {
+        Trust::Yes | Trust::Mostly => theme::good(dark),
+        Trust::No if !state.touring => theme::warning(dark),
+        Trust::No | Trust::NotKnownYet => ui.visuals().text_color(),
+    };
+    let text = RichText::new(format!("Can I trust this? {}", trust.words())).color(colour);
+    let button = ui.selectable_label(state.shown.trust, text);
+    state.note_control("trust", button.rect);
+    let hint =
+        "Is a number of this run the grains', the law's or the method's? A click opens the list.";
+    state.shown.trust ^= button.on_hover_text(hint).clicked();
+}
+
+/// The list, where it is open.
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+    if !state.shown.trust {
+        // Nobody looks: idle cores are to be idle.
+        if state.budget.as_ref().is_some_and(|budget| budget.work.is_some()) {
+            state.budget = None;
+        }
+        return;
+    }
+    follow(ui, state);
+    let mut is_open = true;
+    egui::Window::new("Can I trust this?")
+        .anchor(Align2::LEFT_BOTTOM, [12.0, -40.0])
+        .default_width(420.0)
+        .collapsible(false)
+        .resizable(false)
+        .open(&mut is_open)
+        .show(ui.ctx(), |ui| {
+            ui.set_max_width(420.0);
+            if let Some(world) = state.world() {
+                for line in solved(world) {
+                    ui.label(line);
+                }
+            }
+            let warning = theme::warning(ui.visuals().dark_mode);
+            for alarm in alarms(state) {
+                ui.label(RichText::new(format!("▲ {alarm}")).color(warning));
+            }
+            if let (Some(said), Some(world)) =
+                (state.said_of_ensemble(state.selected), state.world())
+            {
+                let slump = world.snapshot.observables.slump;
+                ui.label(format!("● This pile slumps by {slump:.3}; {said}."))
+                    .on_hover_text(state.about_ensemble());
+            }
+            ui.separator();
+            budget(ui, state);
+        });
+    state.shown.trust &= is_open;
+}
+
+/// How the steps of a world were solved, a line a statement.
+fn solved(world: &WorldFrame) -> Vec<String> {
+    let last = &world.snapshot.observables;
+    if !world.controls.settings.stepper.uses_method() {
+        return vec![
+            "● A step takes a fixed amount of work, and no test says how well it is done.".into(),
+        ];
+    }
+    if last.step == 0 {
+        return vec!["● No step has been taken yet.".into()];
+    }
+    let off =
+        format!("velocities of the last one within {} mm/s", compact(1e3 * last.velocity_error));
+    let unsolved = world.unconverged_steps;
+    if unsolved == 0 {
+        return vec![format!("● All {} are solved as asked, {off}.", counted(last.step, "step"))];
+    }
+    let mut lines = vec![format!(
+        "● {unsolved} of {} were not solved as asked, {off}.",
+        counted(last.step, "step")
+    )];
+    if world.fallback_steps > 0 {
+        lines.push(format!(
+            "● {} of them were solved under bounds of friction instead.",
+            world.fallback_steps
+        ));
+    }
+    lines.push("● Certified, under Law, solver, solves each step.".into());
+    lines
+}
+
+/// What the error budget says, or how far it is.
+fn budget(ui: &mut Ui, state: &mut AppState) {
+    let told = of_budget(state);
+    let Some(budget) = &state.budget else {
+        let text = "A run that went on from a file, or a scene that is no longer there, has no error budget.";
+        ui.label(RichText::new(text).weak());
+        return;
+    };
+    if let Some(failure) = &budget.failure {
+        ui.label(RichText::new(failure).weak());
+        return;
+    }
+    match &told {
+        Some((_, answer)) => ui.label(answer),
+        None => ui.label("An error budget is being computed by idle cores: the first answer takes a minute or so."),
+    };
+    if let Some(work) = &budget.work {
+        work.show(ui, "Error budget", "Stop", "What was found so far stays.");
+    }
+}
+
+/// Has the budget follow the run that is shown.
+fn follow(ui: &Ui, state: &mut AppState) {
+    if let Some(budget) = &mut state.budget
+        && let Some(outcome) = budget.work.as_ref().and_then(Work::outcome)
+    {
+        budget.work = None;
+        budget.failure = outcome.err().map(|error| error.to_string());
+    }
+    let line = state.command_line();
+    if state.budget.as_ref().map(|budget| &budget.of) == line.as_ref() {
+        return;
+    }
+    let is_from_start = state.world().is_some_and(|world| world.recorded_from_secs == 0.0);
+    let config = state.wanted.get(state.selected).map(|wanted| {
+        let config: Config = state.config.clone();
+        config.with_settings(&wanted.settings)
+    });
+    state.budget = match (line, config) {
+        (Some(of), Some(config)) if is_from_start => Some(begin(ui, state, of, config)),
+        _ => None,
+    };
+}
+
+fn begin(ui: &Ui, state: &AppState, of: String, config: Config) -> RunBudget {
+    let quantities = if state.slumps() { Vec::new() } else { vec![OTHERWISE.to_owned()] };
+    let options = BudgetOptions {
+        config,
+        quantities,
+        from_secs: None,
+        to_secs: None,
+        within: None,
+        cost_secs: COST_SECS,
+    };
+    let told: Arc<Mutex<Option<(Trust, String)>>> = Arc::default();
+    let states = state.ensemble.folder();
+    let to = Arc::clone(&told);
+    let work = Work::start(ui.ctx(), move |reporter| {
+        let refuse = |error| Error::value("temporary folder", error, "one that can be made");
+        let folder = tempfile::tempdir().map_err(refuse)?;
+        let states: PathBuf = states.unwrap_or_else(|| folder.path().join("states"));
+        let begun = std::time::Instant::now();
+        let made = || -> Result<()> {
+            let tell = |budget: &crate::study::ErrorBudget| {
+                *to.lock().unwrap_or_else(PoisonError::into_inner) = budget.first_answer();
+                reporter.tell(begun.elapsed().as_secs_f64() / COST_SECS)
+            };
+            let budget = made_budget(&options, folder.path(), &states, tell)?;
+            *to.lock().unwrap_or_else(PoisonError::into_inner) = budget.first_answer();
+            Ok(())
+        };
+        on_idle_cores(made)
+    });
+    RunBudget { of, told, work: Some(work), failure: None }
+}

@@ -1,0 +1,199 @@
+//! The front: what one sees first, the one gesture, and the word on whether to trust it.
+
+use crate::robot::*;
+use egui::Role;
+
+/// A window as it opens, with sliders that start the run again.
+fn open(config: Config) -> Robot {
+    let mut robot = Robot::open(config);
+    robot.state_mut().preferences.starts_again = true;
+    robot
+}
+
+/// Drags the handle of the time step to the right end.
+fn drag_time_step(robot: &mut Robot) {
+    let (from, to) = (robot.place("Δt", 0.66, 0.5), robot.place("Δt", 1.0, 0.5));
+    robot.drag(from, to);
+    robot.button(to, false);
+    robot.settle();
+}
+
+#[test]
+fn a_slider_that_is_let_go_starts_the_pile_again_and_leaves_a_ghost() {
+    let mut robot = open(pile());
+    robot.take_steps(20);
+    let before = robot.settings().parameters.time_step_secs;
+    drag_time_step(&mut robot);
+    let after = robot.settings().parameters.time_step_secs;
+    assert!(after > 4e-3, "{after} s");
+    robot.until("the new run", |state| state.frame.playing && state.frame.time_secs() > 0.0);
+    let row = robot.observables();
+    assert_eq!(
+        row.time_secs,
+        row.step as f64 * row.time_step_secs,
+        "with the new value from the start"
+    );
+    let past = &robot.state().frame.past;
+    assert_eq!(past.len(), 1, "one gesture, one run");
+    assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, before);
+}
+
+#[test]
+fn nothing_starts_while_a_slider_is_held() {
+    let mut robot = open(pile());
+    robot.take_steps(20);
+    let (from, to) = (robot.place("Δt", 0.66, 0.5), robot.place("Δt", 1.0, 0.5));
+    robot.drag(from, to);
+    robot.settle();
+    assert_eq!((robot.steps(), robot.state().frame.past.len()), (20, 0));
+    robot.button(to, false);
+    robot.settle();
+    assert_eq!(robot.state().frame.past.len(), 1);
+}
+
+#[test]
+fn a_number_that_is_typed_starts_the_pile_again_as_well() {
+    let mut robot = open(pile());
+    robot.take_steps(5);
+    robot.type_number("Bond", "75");
+    assert_eq!(robot.settings().parameters.bond, 75.0);
+    assert!(robot.state().frame.playing && robot.state().frame.past.len() == 1);
+}
+
+#[test]
+fn in_a_comparison_only_the_chosen_world_changes() {
+    let mut robot = open(pile());
+    let base = robot.settings();
+    robot.send(Command::Compare(vec![base, base.with_bond(100.0)]));
+    robot.take_steps(5);
+    drag_time_step(&mut robot);
+    let told = robot.of_worlds(|world| {
+        let parameters = world.controls.settings.parameters;
+        (parameters.bond, parameters.time_step_secs > 4e-3)
+    });
+    assert_eq!(told, [(20.0, true), (100.0, false)]);
+}
+
+#[test]
+fn switched_off_the_run_goes_on_and_the_hint_says_what_is_true_then() {
+    let mut robot = open(pile());
+    robot.click("start again when I move a slider");
+    robot.take_steps(20);
+    drag_time_step(&mut robot);
+    assert_eq!((robot.steps(), robot.state().frame.past.len()), (20, 0));
+    robot.harness.step();
+    assert!(robot.shows("Bonds that hold stay as they are"));
+}
+
+/// All that can be clicked, dragged or typed into, a slider and its number as one.
+fn controls(robot: &Robot) -> Vec<(Role, String)> {
+    let is_control = |role: Role| {
+        matches!(
+            role,
+            Role::Button | Role::ComboBox | Role::CheckBox | Role::Slider | Role::SpinButton
+        )
+    };
+    let root = robot.harness.root();
+    let all = root.children_recursive().map(|node| node.accesskit_node());
+    all.filter(|node| is_control(node.role()))
+        .map(|node| (node.role(), node.label().unwrap_or_default()))
+        .collect()
+}
+
+#[test]
+fn a_newcomer_sees_no_more_than_twenty_controls() {
+    let mut robot = Robot::open(Config::default());
+    robot.state_mut().visit(0);
+    robot.settle();
+    robot.frames(5);
+    let all = controls(&robot);
+    assert!(all.len() >= 12, "the situation: {all:?}");
+    assert!(all.len() <= 20, "{}: {all:?}", all.len());
+}
+
+#[test]
+fn no_text_of_the_front_is_cut_at_usual_sizes() {
+    for size in [[1024.0, 700.0], [1280.0, 800.0], [1920.0, 1080.0], [2560.0, 1440.0]] {
+        let mut robot = Robot::open(Config::default());
+        robot.state_mut().visit(0);
+        robot.harness.set_size(egui::vec2(size[0], size[1]));
+        robot.settle();
+        robot.frames(5);
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size[0], size[1]));
+        let labels: Vec<_> = robot
+            .harness
+            .root()
+            .children_recursive()
+            .filter(|node| node.accesskit_node().role() == Role::Label)
+            .collect();
+        assert!(labels.len() >= 8, "the situation: {} labels", labels.len());
+        for label in labels {
+            let (rect, text) = (label.rect(), label.accesskit_node().value().unwrap_or_default());
+            assert!(window.contains_rect(rect.shrink(0.5)), "{size:?}: {text:?} at {rect:?}");
+            assert!(!text.contains('…'), "{size:?}: {text:?}");
+        }
+    }
+}
+
+#[test]
+fn the_bars_fold_away() {
+    let mut robot = Robot::open(pile());
+    robot.key(egui::Key::B);
+    robot.frames(5);
+    let scene = robot.state().controls["scene"];
+    assert!(scene.width() > 980.0 && scene.height() > 680.0, "{scene:?}");
+    robot.click("Unfold");
+    robot.frames(5);
+    assert!(robot.state().controls["scene"].height() < 500.0);
+}
+
+#[test]
+fn what_cannot_be_trusted_is_called_so_and_what_nobody_knows_too() {
+    let mut robot = Robot::open(pile());
+    robot.frames(2);
+    assert!(robot.shows("Can I trust this? not known yet"));
+    let mut robot = Robot::open(Config::of_scene("thin-wall"));
+    robot.take_steps(40);
+    robot.harness.step();
+    assert!(robot.shows("Can I trust this? no"), "grains are lost");
+}
+
+#[test]
+fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
+    let cache = folder();
+    let mut config = Config::of_scene("cradle");
+    config.source.duration = Some(0.05);
+    let mut robot = Robot::open(config);
+    robot.state_mut().ensemble.keep_in(cache.path().to_owned());
+    robot.click("Can I trust this? not known yet");
+    let begun = Instant::now();
+    while !robot.shows("mean(kinetic_energy) is ") {
+        assert!(begun.elapsed() < Duration::from_secs(300), "waited in vain for the budget");
+        robot.harness.step();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // Other settings have a budget of their own.
+    let mut settings = robot.settings();
+    settings.parameters.time_step_secs *= 0.5;
+    robot.change(0, settings);
+    robot.harness.step();
+    assert!(!robot.shows("mean(kinetic_energy) is "), "the answer was of other settings");
+}
+
+#[test]
+fn numbers_beyond_all_reason_widen_nothing() {
+    let mut robot = Robot::open(pile());
+    robot.click("Law, solver");
+    let tab = robot.state().controls["Pile"];
+    robot.take_steps(1);
+    for (field, value) in [("Bond", "1e308"), ("μ, friction", "1e9"), ("Δt, time step", "1e200")]
+    {
+        robot.type_number(field, value);
+    }
+    robot.take_steps(3);
+    robot.frames(10);
+    assert!(robot.world().failure.is_some(), "the situation");
+    assert_eq!(robot.state().controls["Pile"], tab, "the sidebar is where it was");
+    let slider = robot.state().controls["μ"];
+    assert!(slider.left() > 0.0 && slider.right() < tab.left(), "{slider:?}");
+}
