@@ -6,9 +6,9 @@
 #
 #   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
 #
-# screenshots/window.png is its window-lesson-end.png.
+# screenshots/window.png is its window-lesson-end.png, screenshots/drag.gif its drag.gif.
 #
-# Needs a release build (cargo build --release), and of Debian: xvfb xdotool imagemagick python3,
+# Needs a release build (cargo build --release), and of Debian: xvfb xdotool imagemagick python3 ffmpeg,
 # mesa-vulkan-drivers libvulkan1 (or libegl1 libgl1-mesa-dri), and the X11 client libraries that
 # winit loads: libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0.
 set -euo pipefail
@@ -176,11 +176,24 @@ done
 xdotool mousemove 700 20
 sleep 1
 import -window root "$shots/window-lesson-end.png"
+
+# The one gesture, as a picture that moves: Δt is dragged from 0.1 ms to 2 ms, let go, and the pile starts again.
+ffmpeg -loglevel error -y -f x11grab -framerate 10 -video_size 1280x800 -t 8 -i "$DISPLAY" -vf \
+    "scale=800:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=none" \
+    "$shots/drag.gif" &
+film=$!
+sleep 1
+xdotool mousemove $(at Δt 0.34) mousedown 1
+for part in 0.38 0.42 0.46 0.5 0.54 0.58 0.62 0.66 0.7 0.74 0.77; do
+    xdotool mousemove $(at Δt $part)
+    sleep 0.1
+done
+xdotool mouseup 1
+wait "$film"
+wait_for "the pile that was started again" "s['playing'] or s['time_secs'] > 0.5"
+import -window root "$shots/window-ghost.png"
 xdotool key r
 wait_for "the reset" "s['step'] == 0"
-xdotool key Right
-sleep 1
-import -window root "$shots/window-ghost.png"
 for lesson in 2 3; do
     xdotool mousemove $(at "next lesson" 0.5) click 1
     wait_for "lesson $lesson" "s['lesson'] == $lesson and s['step'] == 0 and not s['playing']"

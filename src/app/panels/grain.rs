@@ -64,7 +64,8 @@ pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         row("radius", format!("{:.3} d", grain.radius / diameter));
         let speed = |along: f64| si(if along.abs() < AT_REST { 0.0 } else { along }, "m/s");
         row("velocity", format!("{}, {}", speed(grain.velocity.x), speed(grain.velocity.y)));
-        row("spin", format!("{:.3} rad/s", grain.angular_velocity));
+        // No minus before a zero.
+        row("spin", format!("{:.3} rad/s", grain.angular_velocity).replace("-0.000", "0.000"));
         row("overlap", format!("{:.3} % of d", 100.0 * grain.overlap / diameter));
         row("force Σ|N|", si(grain.force, "N"));
         row("contacts", grain.coordination.to_string());

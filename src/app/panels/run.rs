@@ -144,8 +144,9 @@ fn cost(grains: usize) -> String {
     let part = grains as f64 / LARGE as f64;
     let minutes = (RAIN_SECS * part.powf(1.25) / 60.0).ceil();
     let secs = ROLL_SECS * part.powf(1.8);
+    let most = budget::MOST_SOLVED_GRAINS;
     format!(
-        "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. Steps of more than {LARGE} begin with \
+        "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. Steps of more than {most} begin with \
          Fast, 40 sweeps."
     )
 }

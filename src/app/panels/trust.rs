@@ -8,6 +8,7 @@ use egui::{Align2, RichText, Ui};
 
 use super::grain::compact;
 use super::status::alarms;
+use crate::app::budget::FAST;
 use crate::app::ensemble::on_idle_cores;
 use crate::app::state::AppState;
 use crate::app::theme;
@@ -128,6 +129,16 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     }
     if last.step == 0 {
         return vec!["● No step has been taken yet.".into()];
+    }
+    if world.controls.settings.solver == FAST.among(&world.snapshot.surroundings) {
+        let grains = world.snapshot.grains.len();
+        return vec![
+            format!(
+                "● A step of {grains} grains gets 40 sweeps, solved or not, so that it goes on before one's eyes."
+            ),
+            "● Certified, under Law, solver, solves each step and costs some ten times as much."
+                .into(),
+        ];
     }
     let off =
         format!("velocities of the last one within {} mm/s", compact(1e3 * last.velocity_error));
