@@ -34,6 +34,11 @@ pub use slump_studies as study;
 use slump_core::threads;
 use slump_data::output;
 
+/// The programs of a page of the book.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/rust.md")]
+struct BookOnRust;
+
 mod film;
 mod headless;
 pub mod live;

@@ -172,6 +172,9 @@ for _ in 1 2 3 4; do
     sleep 20
     [ "$(value "s['other_piles'] >= 3")" = True ] && break
 done
+# What the mouse points at would tell of itself.
+xdotool mousemove 700 20
+sleep 1
 import -window root "$shots/window-lesson-end.png"
 
 # The one gesture, as a picture that moves: Δt is dragged from 0.1 ms to 2 ms, let go, and the pile starts again.

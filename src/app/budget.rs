@@ -108,7 +108,7 @@ pub(super) fn complete(scene: &mut Scene, asked: &SolverChanges) {
     }
 }
 
-/// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`RESULTS.md`, Fig. 5a); beyond it need not.
+/// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`docs/paper.md`, Fig. 5a); beyond it need not.
 const WEAK: f64 = 50.0;
 
 /// What to try, and what to watch.

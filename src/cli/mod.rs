@@ -93,7 +93,7 @@ const EXAMPLES: &str = "Examples:
   slump list scenes";
 
 /// The command line, of which `-h` tells the most important part. Settings say what the shipped pile has.
-fn command() -> clap::Command {
+pub fn command() -> clap::Command {
     let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
     let told = |arg: clap::Arg| {
         let name = arg.get_id().as_str();

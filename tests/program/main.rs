@@ -8,6 +8,7 @@ mod probed;
 mod program;
 
 mod command_line;
+mod documents;
 mod error_budget;
 mod foreign_files;
 mod house;

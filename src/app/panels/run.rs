@@ -15,8 +15,8 @@ use crate::solver::SolverChanges;
 /// Most grains that the panel offers; the command line takes more.
 const MOST_GRAINS: usize = 20_000;
 
-/// Piles of that many grains cost enough to say so, and what was measured of just as many (`RESULTS.md`, piles made
-/// quickly), s of one core.
+/// Piles of that many grains cost enough to say so, and what was measured of just as many (`docs/runs.md`, new piles),
+/// s of one core.
 const LARGE: usize = 2_000;
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;

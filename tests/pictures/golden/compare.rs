@@ -68,7 +68,7 @@ fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
 
 /// Where a picture is kept.
 pub fn golden_path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("screenshots").join(format!("{name}.png"))
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/golden").join(format!("{name}.png"))
 }
 
 /// Writes a PNG file as small as the format allows: it stays in the history for ever.

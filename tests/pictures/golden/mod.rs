@@ -1,5 +1,5 @@
-//! Pictures that must not change: what every renderer makes of stored states against the files in
-//! `screenshots/`.
+//! Pictures that must not change: what every renderer makes of stored states against the files beside
+//! this one.
 //!
 //! A GPU may differ by 2/255 in any channel and in 1 % of the pixels at all, the processor by 3/255
 //! anywhere. A mismatch leaves `target/golden/NAME.BACKEND.actual.png` and `.difference.png` (twenty
@@ -44,7 +44,7 @@ fn gpus() -> Vec<(&'static str, Renderer)> {
 }
 
 #[test]
-fn pictures_are_those_in_screenshots() {
+fn pictures_are_those_that_are_kept() {
     let mut renderers = gpus();
     if std::env::var_os("SLUMP_BLESS").is_some() {
         let (_, renderer) = &mut renderers[0];

@@ -141,7 +141,7 @@ impl StabilityTable {
     }
 }
 
-/// What came of all levels together: the first level that did not hold, and how it failed at worst.
+/// What came of all levels together: how it failed at worst, and the first level at which it did.
 fn summary(levels: &[&StabilityCell]) -> (StabilityVerdict, Option<f64>) {
     let worst = levels.iter().map(|cell| cell.verdict).max().unwrap_or(StabilityVerdict::Holds);
     let first =
@@ -229,9 +229,13 @@ pub fn picture(table: &StabilityTable) -> Sheet {
                 y: (middle.1, [middle.1 - 0.47, middle.1 + 0.47]),
                 value: f64::from(verdict as u8),
             });
-            let text = match (verdict, from) {
-                (StabilityVerdict::Holds, _) | (_, None) => "holds".to_owned(),
-                (_, Some(level)) => format!("from {}", number(level)),
+            let first = levels.iter().find(|cell| cell.verdict != StabilityVerdict::Holds);
+            let text = match (first.map(|cell| cell.level), from) {
+                (Some(first), Some(worst)) if first == worst => format!("from {}", number(first)),
+                (Some(first), Some(worst)) => {
+                    format!("{}, {}", number(first), number(worst))
+                }
+                _ => "holds".to_owned(),
             };
             words.push(Layer::Words { at: (middle.0 - 0.4, middle.1 + 0.22), text, colour: INK });
         }
@@ -241,7 +245,9 @@ pub fn picture(table: &StabilityTable) -> Sheet {
     let drivers: Vec<String> =
         challenges.iter().map(|one| format!("{}: {}", one.name, one.driver)).collect();
     let caption = vec![
-        "Green holds; yellow degrades and red fails, from that value of the parameter on:".into(),
+        "Green holds; yellow degrades and red fails, from that value of the parameter on. Two values: it degrades from \
+         the first on and fails from the second on."
+            .into(),
         drivers.join("; "),
     ];
     Sheet {

@@ -1,0 +1,115 @@
+//! Commands of the documents: each is one that the program takes. A block of the book that begins with ```sh alone has quick
+//! ones, and all of them run, in a folder of the page, from the first to the last; one of others says ```sh slow.
+
+use std::time::Instant;
+
+use slump::world::{GravityTurn, Motion, Periodic};
+
+use super::{blocks, book, pages, root};
+use crate::program::*;
+
+/// All quick commands together.
+const MOST_TIME: Duration = Duration::from_secs(60);
+
+/// The words of the program's command in a line, without its name; none where it calls others.
+fn command_in(line: &str) -> Option<Vec<String>> {
+    let words = shlex::split(line).unwrap_or_else(|| panic!("{line}"));
+    let end = words.iter().position(|word| matches!(word.as_str(), "|" | ";" | ">" | "&&"));
+    let mut words = words[..end.unwrap_or(words.len())].to_vec();
+    let program = words.iter().position(|word| word == "slump").filter(|at| *at == 0);
+    let by_cargo = words.starts_with(&["cargo".into(), "run".into()]);
+    let by_cargo = by_cargo.then(|| words.iter().position(|word| word == "--")).flatten();
+    let at = program.or(by_cargo)?;
+    Some(words.split_off(at + 1))
+}
+
+/// The commands of a block, lines that end in a backslash joined.
+fn lines_of(lines: &[&str]) -> Vec<String> {
+    let text = lines.join("\n").replace("\\\n", " ");
+    text.lines().map(str::to_owned).filter(|line| !line.trim().is_empty()).collect()
+}
+
+#[test]
+fn commands_of_documents_are_taken() {
+    let mut refused = Vec::new();
+    let mut taken = 0;
+    for page in pages() {
+        let text = read(&page);
+        let shell = blocks(&text).into_iter().filter(|(info, _)| info.starts_with("sh"));
+        for line in shell.flat_map(|(_, lines)| lines_of(&lines)) {
+            let Some(words) = command_in(&line) else { continue };
+            taken += 1;
+            let words = std::iter::once("slump".to_owned()).chain(words);
+            if let Err(error) = slump::cli::command().try_get_matches_from(words)
+                && error.use_stderr()
+            {
+                refused.push(format!("{}: {line}: {error}", page.display()));
+            }
+        }
+    }
+    assert!(refused.is_empty(), "{}", refused.join("\n"));
+    assert!(taken > 50, "{taken} commands");
+}
+
+/// What a page shows of a scene file.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PartOfScene {
+    #[serde(rename = "motions")]
+    _motions: Option<Vec<Motion>>,
+    #[serde(rename = "gravity_turn")]
+    _gravity_turn: Option<GravityTurn>,
+    #[serde(rename = "periodic")]
+    _periodic: Option<Periodic>,
+}
+
+#[test]
+fn files_of_the_book_are_studies_scenes_or_parts_of_them() {
+    let folder = folder();
+    let file = folder.path().join("file.toml");
+    let mut seen = 0;
+    for page in book() {
+        let text = read(&page);
+        for (_, lines) in blocks(&text).into_iter().filter(|(info, _)| *info == "toml") {
+            let text = lines.join("\n");
+            let is = |table: &str| lines.contains(&table);
+            write(&file, &text);
+            if is("[vary]") {
+                succeed(slump("sweep count").arg(&file));
+            } else if is("[physics]") {
+                succeed(slump("scene --scene").arg(&file));
+            } else if !is("[dependencies]") {
+                let part = toml::from_str::<PartOfScene>(&text);
+                assert!(part.is_ok(), "{}: {:?}: {text}", page.display(), part.err());
+            }
+            seen += 1;
+        }
+    }
+    assert!(seen > 5, "{seen} files");
+}
+
+#[test]
+fn quick_commands_of_documents_run() {
+    let begun = Instant::now();
+    let mut ran = 0;
+    for page in book() {
+        let text = read(&page);
+        let folder = folder();
+        std::os::unix::fs::symlink(root().join("assets"), folder.path().join("assets"))
+            .expect("a link");
+        let quick = blocks(&text).into_iter().filter(|(info, _)| *info == "sh");
+        for line in quick.flat_map(|(_, lines)| lines_of(&lines)) {
+            let Some(words) = command_in(&line) else {
+                panic!(
+                    "{}: {line}: no command of the program in a block that is run",
+                    page.display()
+                )
+            };
+            let output = run(slump("").args(&words).current_dir(folder.path()));
+            assert!(output.status.success(), "{}: {line}: {}", page.display(), said(&output));
+            ran += 1;
+        }
+    }
+    assert!(ran > 10, "{ran} commands");
+    assert!(begun.elapsed() < MOST_TIME, "{ran} quick commands took {:?}", begun.elapsed());
+}

@@ -1,0 +1,99 @@
+//! Links lead somewhere, and numbers that link into a report are those of the report.
+
+use serde_json::Value;
+
+use super::{pages, root};
+use crate::program::{json, read};
+
+/// The links of a page: text and target. Blocks of code have none.
+fn links(text: &str) -> Vec<(&str, &str)> {
+    let prose = text.split("```").step_by(2);
+    let found = prose.flat_map(|prose| {
+        prose.match_indices("](").filter_map(|(at, _)| {
+            let target = prose[at + 2..].split_once(')')?.0;
+            Some((&prose[prose[..at].rfind('[')? + 1..at], target))
+        })
+    });
+    found.collect()
+}
+
+/// The name of a heading in links, as GitHub makes it.
+fn anchor(heading: &str) -> String {
+    let heading = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = heading.chars().filter(|it| it.is_alphanumeric() || matches!(it, ' ' | '-' | '_'));
+    kept.map(|it| if it == ' ' { '-' } else { it }).collect()
+}
+
+/// True where a number is printed as a report has it, to the digits that are shown: `−.25`, `+0.3`, `49`, `1.2e-3`.
+fn is_printed(text: &str, value: &Value) -> bool {
+    let Some(number) = value.as_f64() else { return value.as_str() == Some(text) };
+    let plain = text.replace('−', "-").replace('+', "");
+    let mantissa = plain.split('e').next().unwrap_or_default();
+    let digits = mantissa.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let rounded = match plain.contains('e') {
+        true => format!("{number:.digits$e}"),
+        false => format!("{number:.digits$}"),
+    };
+    rounded.parse::<f64>().ok() == plain.parse().ok()
+}
+
+#[test]
+fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
+    let mut wrong = Vec::new();
+    let mut numbers = 0;
+    for page in pages() {
+        let text = read(&page);
+        let folder = page.parent().expect("a folder");
+        for (said, target) in links(&text) {
+            if target.contains("://") {
+                continue;
+            }
+            let (path, fragment) = target.split_once('#').unwrap_or((target, ""));
+            let path = if path.is_empty() { page.clone() } else { folder.join(path) };
+            let mut complain = |what: &str| {
+                let page = page.strip_prefix(root()).expect("a page of ours").display();
+                wrong.push(format!("{page}: [{said}]({target}): {what}"));
+            };
+            if !path.exists() {
+                complain("no such file");
+            } else if let Some(pointer) = target.contains(".json#").then_some(fragment) {
+                numbers += 1;
+                match json(&path).pointer(pointer) {
+                    Some(value) if is_printed(said, value) => {}
+                    Some(value) => complain(&format!("the report has {value}")),
+                    None => complain("nothing is there"),
+                }
+            } else if !fragment.is_empty()
+                && !read(&path).lines().any(|it| it.starts_with('#') && anchor(it) == fragment)
+            {
+                complain("no such heading");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(numbers > 20, "{numbers} numbers of reports");
+}
+
+#[test]
+fn every_picture_is_shown_and_says_its_result() {
+    let texts: Vec<String> = pages().iter().map(read).collect();
+    for entry in std::fs::read_dir(root().join("screenshots")).expect("pictures") {
+        let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
+        let shown = texts.iter().flat_map(|text| links(text)).filter(|(_, to)| to.ends_with(&name));
+        let said: Vec<&str> = shown.map(|(said, _)| said).collect();
+        assert!(!said.is_empty(), "no page shows {name}");
+        assert!(said.iter().all(|said| said.split(' ').count() > 10), "{name}: {said:?}");
+    }
+}
+
+#[test]
+fn a_number_is_held_to_the_digits_that_it_shows() {
+    for (text, value) in
+        [("0.24", 0.2417), ("−.25", -0.2543), ("+0.3", 0.264), ("49", 49.0), ("1.3e-3", 1.26e-3)]
+    {
+        assert!(is_printed(text, &Value::from(value)), "{text}");
+    }
+    for (text, value) in [("0.25", 0.2417), ("0.25", -0.2543), ("much", 0.3), ("", 0.0)] {
+        assert!(!is_printed(text, &Value::from(value)), "{text}");
+    }
+}

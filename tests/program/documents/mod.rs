@@ -1,0 +1,95 @@
+//! The documents: links lead somewhere, numbers are those of the reports that they link to, commands are taken and quick ones
+//! run, what is made of declarations is today's, and pages are short.
+
+mod commands;
+mod links;
+mod made;
+
+use std::path::{Path, PathBuf};
+
+use crate::program::read;
+
+/// What a reader gives a page.
+const MOST_WORDS: usize = 1_500;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The pages of the book.
+fn book() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(root().join("docs")).expect("the book");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let mut pages: Vec<_> =
+        paths.filter(|path| path.extension().is_some_and(|it| it == "md")).collect();
+    pages.sort();
+    pages
+}
+
+/// All pages that are for readers.
+fn pages() -> Vec<PathBuf> {
+    let others = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "python/README.md",
+        "tests/problems/README.md",
+        "benches/factorisations/README.md",
+        "benches/peers/README.md",
+    ];
+    others.iter().map(|name| root().join(name)).chain(book()).collect()
+}
+
+/// Blocks of a page between lines of three backticks: what follows the first three, and the lines.
+fn blocks(text: &str) -> Vec<(&str, Vec<&str>)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(&str, Vec<&str>)> = None;
+    for line in text.lines() {
+        match (line.strip_prefix("```"), open.take()) {
+            (Some(info), None) => open = Some((info.trim(), Vec::new())),
+            (Some(_), Some(block)) => blocks.push(block),
+            (None, Some((info, mut lines))) => {
+                lines.push(line);
+                open = Some((info, lines));
+            }
+            (None, None) => {}
+        }
+    }
+    assert!(open.is_none(), "a block without an end");
+    blocks
+}
+
+#[test]
+fn pages_are_short_and_in_the_summary() {
+    let summary = read(root().join("docs/SUMMARY.md"));
+    assert!(read(root().join("README.md")).lines().count() <= 120, "README.md");
+    for page in book() {
+        let name = page.file_name().expect("a name").to_string_lossy().into_owned();
+        if name == "SUMMARY.md" {
+            continue;
+        }
+        assert!(summary.contains(&format!("({name})")), "{name} is not in the summary");
+        let words = made::without_tables_of_declarations(&read(&page)).split_whitespace().count();
+        assert!(words <= MOST_WORDS, "{name} has {words} words");
+    }
+    for (name, most) in [("ARCHITECTURE.md", 1_500), ("CONTRIBUTING.md", 3_000)] {
+        let words = read(root().join(name)).split_whitespace().count();
+        assert!(words <= most, "{name} has {words} words");
+    }
+}
+
+#[test]
+fn what_is_tried_of_a_commit_are_the_commands_of_the_readme() {
+    let tried = read(root().join(".ci/run"));
+    let text = read(root().join("README.md"));
+    let shell = blocks(&text).into_iter().filter(|(info, _)| info.starts_with("sh"));
+    let commands: Vec<&str> = shell
+        .flat_map(|(_, lines)| lines)
+        .map(|it| it.split(" #").next().unwrap_or(it).trim())
+        .collect();
+    for command in ["cargo run --release -- --headless --frames out/", "cargo test --release"] {
+        assert!(commands.contains(&command), "the README has {commands:?}");
+        let command = command.trim_end_matches(" out/");
+        assert!(tried.lines().any(|line| line.contains(command)), "{command} is not tried");
+    }
+}
