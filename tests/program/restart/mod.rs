@@ -42,7 +42,7 @@ fn refusal(bytes: &[u8]) -> String {
 /// Content with a first line that is its own.
 fn sealed(content: &[u8]) -> Vec<u8> {
     let version = env!("CARGO_PKG_VERSION");
-    let line = format!("slump-state 3 {version} {} {}\n", content.len(), blake3::hash(content));
+    let line = format!("slump-state 4 {version} {} {}\n", content.len(), blake3::hash(content));
     [line.as_bytes(), content].concat()
 }
 
