@@ -102,6 +102,13 @@ fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
     Table::new("pairs", PAIR_COLUMNS, &rows, &others.names)
 }
 
+impl Table {
+    /// A row a pair that has transmitted anything.
+    pub fn of_pairs(sums: &ForceSums, moment: &Moment) -> Self {
+        pairs_table(sums, moment)
+    }
+}
+
 pub(super) fn no_pairs() -> Table {
     Table::new("pairs", PAIR_COLUMNS, &[], &[])
 }
