@@ -154,6 +154,15 @@ fn a_force_lies_between_the_centres_that_it_acts_on() {
 }
 
 #[test]
+fn where_all_grains_are_lost_there_is_nothing() {
+    let mut moment = moment_of("pile", 5);
+    moment.grains.iter_mut().for_each(|grain| grain.lost = true);
+    let fields = Fields::of(&moment, 0.01).expect("fields");
+    assert!(!fields.density.is_empty() && fields.density.iter().all(|&density| density == 0.0));
+    assert!(fields.contact_stress.iter().all(|&stress| stress == DMat2::ZERO));
+}
+
+#[test]
 fn widths_that_are_none_and_grids_that_are_too_large_are_refused() {
     let moment = moment_of("pile", 0);
     for (width, expected) in [

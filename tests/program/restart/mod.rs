@@ -78,7 +78,7 @@ fn what_is_no_state_or_of_another_version_says_so() {
     let version = env!("CARGO_PKG_VERSION");
     for (other, named) in [
         (text.replace(version, "99.0.1"), "version 99.0.1 of the program"),
-        (text.replace("state 3 ", "state 77 "), "format 77"),
+        (text.replace("state 4 ", "state 77 "), "format 77"),
     ] {
         let said = refusal(&[other.as_bytes(), &bytes[line..]].concat());
         assert!(said.contains(named) && said.contains(&format!("version {version}")), "{said}");

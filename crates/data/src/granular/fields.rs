@@ -72,12 +72,12 @@ impl Fields {
         let centres = network.grains().map(|(_, grain)| grain.position);
         let touched = network.links.iter();
         let touched = touched.map(|link| network.grains[link.grain].position - link.branch());
-        let places: Vec<DVec2> = centres.chain(touched).collect();
-        if places.is_empty() {
-            return Err(Error::value("grains", 0, "one that is not lost, or more"));
-        }
-        let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-        let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let reach = |at: DVec2| [at, at];
+        let wider =
+            |[low, high]: [DVec2; 2], [other, one]: [DVec2; 2]| [low.min(other), high.max(one)];
+        // Where all grains are lost, there is nothing about the origin.
+        let [low, high] =
+            centres.chain(touched).map(reach).reduce(wider).unwrap_or([DVec2::ZERO; 2]);
         let axes = [
             Axis::of(periodic.x, [low.x, high.x], width),
             Axis::of(periodic.y, [low.y, high.y], width),

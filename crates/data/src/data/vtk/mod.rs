@@ -230,9 +230,16 @@ const OF_FIELDS: [&str; 10] = [
     "contact_stress_yy [N/m]: likewise",
 ];
 
-/// Fields as an image, smoothed by a mean diameter.
+/// Fields as an image, smoothed by a mean diameter, or by twice as much as often as it takes: a grain that is far away would
+/// make the grid too large.
 fn fields_file(frame: &Frame, facts: &RunFacts) -> Result<Vec<u8>> {
-    let fields = Fields::of(&frame.moment, frame.moment.surroundings.mean_diameter)?;
+    let mut width = frame.moment.surroundings.mean_diameter;
+    let mut fields = Fields::of(&frame.moment, width);
+    while fields.is_err() && width.is_finite() {
+        width *= 2.0;
+        fields = Fields::of(&frame.moment, width);
+    }
+    let fields = fields?;
     let along = |axis: usize| [fields.first[axis], fields.first[axis] + fields.counts[axis] as i64];
     let cells = VtkCells::Grid {
         origin: fields.origin.to_array(),
