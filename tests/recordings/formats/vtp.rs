@@ -239,7 +239,7 @@ fn fields_of_grains_that_are_far_apart_are_smoothed_more() {
     let folder = folder();
     let mut recording = start(folder.path());
     let mut far = moment(10);
-    far.grains[1].position.x = 1e5;
+    far.grains[1].position.x = 1e6;
     recording.add(moment(0)).expect("a frame");
     recording.add(far).expect("a frame");
     recording.finish().expect("files");
