@@ -99,7 +99,7 @@ def compare(mesh, arrays, rows, vectors, all_flags):
 
 def described(mesh):
     said = list(mesh.field_data["columns"])
-    assert any(words.startswith(("radius [m]:", "gap [m]:")) for words in said), said
+    assert any(words.startswith(("radius [m]:", "gap [m]:", "density [kg")) for words in said), said
     about = list(mesh.field_data["about"])
     assert about[0].startswith("program: slump "), about
     assert any(words.startswith("parameters.time_step_secs: ") for words in about), about
