@@ -245,7 +245,7 @@ fn fields_of_grains_that_are_far_apart_are_smoothed_more() {
     recording.finish().expect("files");
     let widths = ["fields_000000.vti", "fields_000001.vti"].map(|name| {
         let text =
-            String::from_utf8_lossy(&bytes(&folder.path().join("fields").join(name))).into_owned();
+            String::from_utf8_lossy(&bytes(folder.path().join("fields").join(name))).into_owned();
         let (_, rest) = text.split_once("Name=\"smoothing_width\"").expect("a width");
         let (_, number) = rest.split_once('>').expect("a number");
         number.split('<').next().and_then(|number| number.parse::<f64>().ok()).expect("a number")
