@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use slump_core::error::Error;
 use slump_data::data::{Table, Values};
+use slump_data::granular::Fields;
 
 /// Classes of the package, which are made in Python.
 mod classes {
@@ -75,6 +76,33 @@ pub(crate) fn vectors<V: From<[f64; 2]>>(
         ));
     }
     Ok(given.rows().into_iter().map(|row| [row[0], row[1]].into()).collect())
+}
+
+/// Smoothed fields as a dictionary of arrays.
+pub(crate) fn fields_of<'py>(py: Python<'py>, fields: &Fields) -> PyResult<Bound<'py, PyDict>> {
+    let [columns, lines] = fields.counts;
+    let dict = PyDict::new(py);
+    dict.set_item("width", fields.width)?;
+    let [x, y] = fields.centres();
+    dict.set_item("x", list(py, x.into_iter()))?;
+    dict.set_item("y", list(py, y.into_iter()))?;
+    let density = fields.density.clone().into_pyarray(py).reshape([lines, columns])?;
+    dict.set_item("density", read_only(density))?;
+    for (name, vectors) in [("momentum", &fields.momentum), ("velocity", &fields.velocity)] {
+        let numbers: Vec<f64> = vectors.iter().flat_map(|vector| vector.to_array()).collect();
+        let array = numbers.into_pyarray(py).reshape([lines, columns, 2])?;
+        dict.set_item(name, read_only(array))?;
+    }
+    let stresses =
+        [("kinetic_stress", &fields.kinetic_stress), ("contact_stress", &fields.contact_stress)];
+    for (name, stresses) in stresses {
+        // By rows, as numpy has it.
+        let numbers: Vec<f64> =
+            stresses.iter().flat_map(|stress| stress.transpose().to_cols_array()).collect();
+        let array = numbers.into_pyarray(py).reshape([lines, columns, 2, 2])?;
+        dict.set_item(name, read_only(array))?;
+    }
+    Ok(dict)
 }
 
 /// A list of numbers or switches.

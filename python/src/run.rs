@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use slump_core::error::{Error, Result};
 use slump_core::scene::Scene;
-use slump_core::sim::{AlarmKind, Observables, Simulation, Tally};
+use slump_core::sim::{AlarmKind, ForceSums, Observables, Simulation, Tally};
 use slump_data::config::SavedState;
 use slump_data::config::scene_facts;
 use slump_data::data::{DataSettings, Recording, Times, formats_of};
@@ -22,6 +22,8 @@ pub(crate) struct Run {
     pub simulation: Simulation,
     /// A row a step, since the start or since they were last forgotten.
     pub rows: Vec<Observables>,
+    /// What pairs transmitted since that was begun, if it was.
+    pub sums: Option<ForceSums>,
     /// Sums over all of its steps.
     tally: Tally,
     /// Where it is recorded, if it is.
@@ -42,7 +44,8 @@ impl Run {
         let SavedState { scene, simulation, tally, .. } = state;
         // Who saved it has been told of these.
         let alarms_told = simulation.alarms().len();
-        Self { scene, simulation, rows: Vec::new(), tally, recording: None, alarms_told }
+        let (rows, sums) = (Vec::new(), None);
+        Self { scene, simulation, rows, sums, tally, recording: None, alarms_told }
     }
 
     /// All of it as it is now, but for the rows of its steps.
@@ -60,10 +63,18 @@ impl Run {
             scene: self.scene.clone(),
             simulation: self.simulation.clone(),
             rows: self.rows.clone(),
+            sums: self.sums.clone(),
             tally: self.tally,
             recording: None,
             alarms_told: self.alarms_told,
         }
+    }
+
+    /// Begins to sum up what pairs transmit.
+    pub(crate) fn begin_pairs(&mut self) {
+        let mut sums = ForceSums::default();
+        sums.follow(&self.simulation);
+        self.sums = Some(sums);
     }
 
     /// Records it from its present state on.
@@ -108,6 +119,9 @@ impl Run {
     fn take_down(&mut self, is_finite: bool) -> Result<()> {
         let row = *self.simulation.observables();
         self.rows.push(row);
+        if let Some(sums) = &mut self.sums {
+            sums.follow(&self.simulation);
+        }
         self.tally.add(&row);
         let Some(recording) = &mut self.recording else { return Ok(()) };
         let mut taken = recording.add_step(&row);

@@ -3,17 +3,19 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{AllowTypeChange, PyArrayLike2};
+use numpy::{AllowTypeChange, PyArray2, PyArrayLike2};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::conversion::{exception, parsed, refused, vectors};
+use crate::conversion::{exception, fields_of, parsed, refused, rows, vectors};
 use crate::run::Run;
 use crate::{options, start, stepping};
 use slump_core::sim::AlarmKind;
+use slump_core::world::Disc;
 use slump_data::config::SavedState;
 use slump_data::data::{DataSettings, FormatName};
+use slump_data::granular::Fields;
 use slump_data::interchange::problem_file_of;
 
 /// A scene in motion.
@@ -189,7 +191,7 @@ impl Simulation {
     /// Records from now on into a folder, as `--data` of the command line does: what each step measures, and all
     /// grains and contacts each `every` seconds of simulated time. A recording that it had before ends.
     ///
-    /// `formats` are some of parquet (where nothing is said), csv, vtk and ovito. An earlier recording in the
+    /// `formats` are some of parquet (where nothing is said), csv, vtk, ovito and fields. An earlier recording in the
     /// folder is refused unless `overwrite` removes it. Files are written on a thread of their own; where that
     /// fails, the recording ends, and a later step, or `end_recording`, says why.
     #[pyo3(signature = (folder, every=0.04, formats=None, overwrite=false))]
@@ -257,6 +259,73 @@ impl Simulation {
     ) -> PyResult<()> {
         let velocities: Vec<_> = vectors("velocities", &velocities)?;
         self.run(py).simulation.set_velocities(&velocities).map_err(exception)
+    }
+
+    /// Puts a grain in at x, y (m) with that radius (m) and velocity (m/s). It is the last one, and has the density of the
+    /// others. There must be room for it.
+    #[pyo3(signature = (x, y, radius, vx=0.0, vy=0.0))]
+    fn add_grain(
+        &self,
+        py: Python<'_>,
+        x: f64,
+        y: f64,
+        radius: f64,
+        vx: f64,
+        vy: f64,
+    ) -> PyResult<()> {
+        let disc = Disc { position: [x, y].into(), radius };
+        self.run(py).simulation.add_grain(disc, [vx, vy].into()).map_err(exception)
+    }
+
+    /// Takes grain i out. Those after it are numbered one lower.
+    fn remove_grain(&self, py: Python<'_>, i: i64) -> PyResult<()> {
+        let mut run = self.run(py);
+        let count = run.simulation.world().grains.len();
+        let grain = usize::try_from(i)
+            .map_err(|_| refused("grain", i, format!("from 0 to {}, its number", count - 1)))?;
+        run.simulation.remove_grain(grain).map_err(exception)
+    }
+
+    /// The force on each grain beside gravity, N, a row a grain: set as a whole, it acts from the next step on until it is set
+    /// anew. Its work is part of `gravity_work`. A run that is saved, copied or pickled keeps it; recordings do not have it.
+    #[getter]
+    fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let run = self.run(py);
+        let forces = run.simulation.body_forces().iter().map(|&force| force.into());
+        let none = run.simulation.world().grains.len() - forces.len();
+        let forces: Vec<[f64; 2]> = forces.chain(std::iter::repeat_n([0.0; 2], none)).collect();
+        rows(py, forces.into_iter())
+    }
+
+    #[setter]
+    fn set_body_forces(
+        &self,
+        py: Python<'_>,
+        forces: PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<()> {
+        let forces: Vec<_> = vectors("body_forces", &forces)?;
+        self.run(py).simulation.set_body_forces(&forces).map_err(exception)
+    }
+
+    /// Begins to sum up what pairs transmit: from now on `pairs` has the means over all steps since. Steps then take longer.
+    fn begin_pairs(&self, py: Python<'_>) {
+        self.run(py).begin_pairs();
+    }
+
+    /// Fields of density, velocity and stress on a grid, smoothed by `width` (m, the mean diameter where none is given), which
+    /// is the standard deviation along each axis (I. Goldhirsch, Granular Matter 12:239, 2010).
+    ///
+    /// Arrays have a row for each of the heights `y`, a column for each `x` (centres of cells, m), then vectors and tensors:
+    /// `density` (kg/m²), `momentum` (kg/(m s)), `velocity` (m/s, NaN where nothing is), `kinetic_stress` and `contact_stress`
+    /// (N/m, compression positive). They are means over cells of half a width, so that sums over all cells are exact.
+    #[pyo3(signature = (width=None))]
+    fn fields<'py>(&self, py: Python<'py>, width: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+        let (moment, diameter) = {
+            let run = self.run(py);
+            (run.simulation.moment(), run.scene.mean_diameter)
+        };
+        let fields = py.detach(|| Fields::of(&moment, width.unwrap_or(diameter)));
+        fields_of(py, &fields.map_err(exception)?)
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> String {

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::conversion::{columns, data_of, first_row, list, rows};
+use crate::conversion::{columns, data_of, first_row, list, refused, rows};
 use crate::simulation::Simulation;
 use slump_data::data::Table;
 
@@ -45,6 +45,17 @@ impl Simulation {
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         columns(py, Table::of_walls(&moment))
+    }
+
+    /// All pairs that have transmitted anything since `begin_pairs()`, parted or not: N, T and force, means over that time, as a
+    /// table.
+    #[getter]
+    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let run = self.run(py);
+        let Some(sums) = &run.sums else {
+            return Err(refused("pairs", "not begun", "asked for after begin_pairs()"));
+        };
+        columns(py, Table::of_pairs(sums, &run.simulation.moment()))
     }
 
     /// What is measured of the whole pile: stress, fabric, coordination, solid fraction, forces, clusters.

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -155,6 +158,98 @@ def test_grains_are_put_elsewhere_and_pushed(sim: slump.Simulation) -> None:
     ]:
         with pytest.raises(slump.InputError, match=sentence):
             getattr(other, f"set_{name}")(given)
+
+
+def test_a_grain_comes_in_motion_and_goes(sim: slump.Simulation) -> None:
+    other, alone = sim.copy(), sim.copy()
+    other.add_grain(0.0, 1.0, other.mean_diameter / 2, vx=0.25)
+    assert other.positions.shape == (139, 2) and list(other.velocities[-1]) == [0.25, 0.0]
+    np.testing.assert_array_equal(other.forces, sim.forces)
+    other.remove_grain(138)
+    for run in (other, alone):
+        run.step(5)
+    np.testing.assert_array_equal(other.positions, alone.positions)
+    low = sim.positions[0]
+    for act, sentence in [
+        (lambda: other.add_grain(*low, 0.001), "place of a new grain is on another one, but must be free"),
+        (lambda: other.add_grain(0.0, 1.0, 1.0), "diameter of a new grain is "),
+        (lambda: other.add_grain(0.0, 1.0, 0.002, vy=np.nan), r"velocity of a new grain is \[0, NaN\], but must be finite"),
+        (lambda: other.remove_grain(138), "grain is 138, but must be below 138, the number of grains"),
+        (lambda: other.remove_grain(-1), "grain is -1, but must be from 0 to 137"),
+    ]:
+        with pytest.raises(slump.InputError, match=sentence):
+            act()
+    assert len(other.radii) == 138
+
+
+def test_body_forces_are_held_and_close_energies() -> None:
+    sim = slump.Simulation("pile", bond=5, dt=5e-4)
+    assert sim.body_forces.shape == sim.positions.shape and not sim.body_forces.any()
+    forces = sim.masses[:, None] * [4.0, 1.0]
+    sim.body_forces = forces
+    sim.step(30)
+    np.testing.assert_array_equal(sim.body_forces, forces)
+    history = sim.history
+    works = sum(history[f"{name}_work"] for name in ("normal", "tangential", "gravity"))
+    np.testing.assert_allclose(np.diff(history["kinetic_energy"]), works[1:], atol=1e-12 * history["kinetic_energy"].max())
+    plain = slump.Simulation("pile", bond=5, dt=5e-4)
+    plain.step(30)
+    momentum = (sim.masses[:, None] * (sim.velocities - plain.velocities)).sum(axis=0)
+    assert momentum[0] > 0.1 * sim.time * forces[:, 0].sum()
+    runs = [pickle.loads(pickle.dumps(sim)), sim.copy(), copy.deepcopy(sim), sim]
+    for run in runs:
+        run.step(10)
+        np.testing.assert_array_equal(run.positions, sim.positions if run is sim else runs[0].positions)
+    sim.remove_grain(7)
+    np.testing.assert_array_equal(sim.body_forces, np.delete(forces, 7, axis=0))
+    for given, sentence in [
+        (forces, "body_forces is 138, but must be 137, one a grain"),
+        (forces[:, :1], r"body_forces.shape is \[138, 1\], but must be \(grains, 2\)"),
+        (np.full((137, 2), np.nan), r"body_forces\[0\] is \[NaN, NaN\], but must be finite"),
+    ]:
+        with pytest.raises(slump.InputError, match=sentence):
+            sim.body_forces = given
+    sim.body_forces = np.zeros((137, 2))
+    assert not sim.body_forces.any()
+
+
+def test_pairs_have_the_means_since_they_were_begun(sim: slump.Simulation) -> None:
+    other = sim.copy()
+    with pytest.raises(slump.InputError, match=r"pairs is not begun, but must be asked for after begin_pairs\(\)"):
+        other.pairs
+    other.begin_pairs()
+    assert other.pairs["fx"].shape == (0,)
+    before, sums = other.velocities.copy(), np.zeros((138, 2))
+    other.step(40)
+    pairs = other.pairs
+    assert pairs["mean_time"] == pytest.approx(40 * other.dt)
+    np.add.at(sums, pairs["id_i"], np.stack([pairs["fx"], pairs["fy"]], axis=1))
+    between = pairs["kind_j"] == "grain"
+    np.add.at(sums, pairs["id_j"][between], -np.stack([pairs["fx"], pairs["fy"]], axis=1)[between])
+    change = other.masses[:, None] * ((other.velocities - before) / (40 * other.dt) + [0.0, other.gravity])
+    np.testing.assert_allclose(change, sums, atol=1e-9 * np.abs(sums).max())
+    parted = len(pairs["fx"]) - len(other.contacts["fx"])
+    assert parted > 0 or (parted == 0 and other.stepper == "range"), "bonds of that law hold"
+
+
+def test_fields_are_exact_in_sum(sim: slump.Simulation) -> None:
+    fields, measures = sim.fields(), sim.measures
+    assert fields["width"] == sim.mean_diameter
+    x, y = fields["x"], fields["y"]
+    area = (x[1] - x[0]) * (y[1] - y[0])
+    assert fields["density"].shape == (len(y), len(x))
+    assert area * fields["density"].sum() == pytest.approx(sim.masses.sum(), rel=1e-12)
+    momentum = (sim.masses[:, None] * sim.velocities).sum(axis=0)
+    np.testing.assert_allclose(area * fields["momentum"].sum(axis=(0, 1)), momentum, rtol=1e-10)
+    stress = [[measures[f"stress_{row}{column}"] for column in "xy"] for row in "xy"]
+    found = area * fields["contact_stress"].sum(axis=(0, 1)) / measures["area"]
+    np.testing.assert_allclose(found, stress, atol=1e-11 * np.abs(stress).max())
+    middle = (fields["density"] * y[:, None]).sum() / fields["density"].sum()
+    assert middle == pytest.approx(np.average(sim.positions[:, 1], weights=sim.masses), abs=0.01 * fields["width"])
+    wide = sim.fields(width=3 * sim.mean_diameter)
+    assert wide["density"].size < fields["density"].size
+    with pytest.raises(slump.InputError, match="width is -1, but must be a finite length > 0 in m"):
+        sim.fields(width=-1)
 
 
 def test_a_table_of_grains_is_a_start(sim: slump.Simulation) -> None:

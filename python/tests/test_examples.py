@@ -26,6 +26,28 @@ def test_an_example_leaves_a_picture(tmp_path: Path, example: Path) -> None:
     assert picture.read_bytes().startswith(b"\x89PNG") and picture.stat().st_size > 10_000
 
 
+RUN_NOTEBOOK = """
+import sys, nbclient, nbformat
+notebook = nbformat.read(sys.argv[1], as_version=4)
+nbclient.NotebookClient(notebook, kernel_name="python3").execute()
+for cell in notebook.cells:
+    for output in cell.get("outputs", []):
+        print(output.get("text") or " ".join(output["data"]))
+"""
+
+
+@pytest.mark.parametrize("notebook", sorted((ROOT / "python" / "examples").glob("*.ipynb")), ids=lambda path: path.stem)
+def test_a_notebook_runs_and_is_kept_without_outputs(tmp_path: Path, notebook: Path) -> None:
+    assert '"outputs": []' in notebook.read_text() and "image/png" not in notebook.read_text()
+    command = [sys.executable, "-c", RUN_NOTEBOOK, str(notebook)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "text/html" in done.stdout and done.stdout.count("image/png") == 2
+    # Every number that is printed as a difference is rounding.
+    rests = [float(rest) for rest in re.findall(r"^1 less .*: (\S+)$", done.stdout, re.MULTILINE)]
+    assert len(rests) == 2 and max(map(abs, rests)) < 1e-11, done.stdout
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_what_a_page_says_runs(tmp_path: Path, page: Path) -> None:
     programs = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)

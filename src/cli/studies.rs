@@ -10,6 +10,7 @@ use crate::headless::draw_snapshots;
 use crate::output::{
     Progress, check_file, check_writable, note_line, print_line, print_text, write_file,
 };
+use crate::sim::Stepper;
 use crate::solver::Method;
 use crate::study::chart::{png, svg};
 use crate::study::stability::{
@@ -135,6 +136,9 @@ pub(super) enum StudyCommand {
         /// Smaller systems and fewer of them, in a few minutes
         #[arg(long)]
         quick: bool,
+        /// The way to step, under which all is computed; but for moreau, experiments about methods are left out
+        #[arg(long, value_name = "NAME", default_value = "moreau", value_parser = parser_of::<Stepper>())]
+        stepper: Stepper,
         /// Methods, each with every time step and effort [default: nsgs]
         #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
         methods: Vec<Method>,
@@ -233,6 +237,7 @@ impl StudyCommand {
                 experiments,
                 out,
                 quick,
+                stepper,
                 methods,
                 time_steps_secs,
                 sweeps,
@@ -241,6 +246,7 @@ impl StudyCommand {
                 experiments,
                 out,
                 quick,
+                stepper,
                 methods,
                 time_steps_secs,
                 sweeps,

@@ -37,7 +37,7 @@ packages=(numpy pandas polars pyarrow pyvista MDAnalysis ase)
 record() {
     local name=$1
     shift
-    "$SLUMP" --headless --data "$out/$name" --overwrite --data-format parquet,csv,vtk,ovito "$@" 2>"$out/$name.log" ||
+    "$SLUMP" --headless --data "$out/$name" --overwrite --data-format parquet,csv,vtk,ovito,fields "$@" 2>"$out/$name.log" ||
         { cat "$out/$name.log" >&2; exit 1; }
 }
 # The paper's law on a base of fixed discs, bonds that tell their stretch, and walls of every shape.

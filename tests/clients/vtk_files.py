@@ -39,9 +39,31 @@ def main(recording):
         compare(contacts, contacts.cell_data, rows["contacts"], VECTORS | POINT, all_flags)
         ends(contacts, grains, rows["contacts"])
         assert grains.active_scalars_name == "radius" and contacts.active_scalars_name == "normal_force"
+    fields(recording, wanted, tables["grains"], table(recording, "contacts"))
     glyphs = grains.glyph(scale="radius", orient=False, geom=pyvista.Disc(inner=0, outer=1, c_res=12))
     assert glyphs.n_cells == 12 * grains.n_points
     print(f"PyVista {pyvista.__version__} with VTK {pyvista.vtk_version_info} reads {recording}")
+
+
+def fields(recording, wanted, of_grains, of_contacts):
+    reader = pyvista.get_reader(f"{recording}/fields/fields.pvd")
+    assert list(reader.time_values) == list(wanted["time"])
+    for _, (step, time, _) in wanted.iterrows():
+        image = read(reader, time)
+        assert isinstance(image, pyvista.ImageData) and image.field_data["step"][0] == step
+        described(image)
+        rows = of_grains[(of_grains["step"] == step) & (of_grains["kind"] == "grain")]
+        area = image.spacing[0] * image.spacing[1]
+        assert numpy.isclose(image.spacing, [*2 * [image.field_data["smoothing_width"][0] / 2], 1], rtol=0.1).all()
+        masses = rows["mass"].to_numpy()
+        assert numpy.isclose(area * image["density"].sum(), masses.sum(), rtol=1e-12)
+        # Where the image lies in space is where the grains are.
+        centre = (image["density"][:, None] * image.cell_centers().points).sum(axis=0) / image["density"].sum()
+        off = numpy.abs(centre[:2] - numpy.average(rows[["x", "y"]], axis=0, weights=masses))
+        if (rows[["x", "y"]] == rows[["x_unwrapped", "y_unwrapped"]].to_numpy()).all(axis=None):
+            assert (off < 0.02 * image.spacing[0]).all(), off
+        rows = of_contacts[of_contacts["step"] == step]
+        assert image["contact_stress_yy"].any() == bool(rows["fy"].any())
 
 
 def read(reader, time):
@@ -77,7 +99,7 @@ def compare(mesh, arrays, rows, vectors, all_flags):
 
 def described(mesh):
     said = list(mesh.field_data["columns"])
-    assert any(words.startswith(("radius [m]:", "gap [m]:")) for words in said), said
+    assert any(words.startswith(("radius [m]:", "gap [m]:", "density [kg")) for words in said), said
     about = list(mesh.field_data["about"])
     assert about[0].startswith("program: slump "), about
     assert any(words.startswith("parameters.time_step_secs: ") for words in about), about

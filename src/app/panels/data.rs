@@ -113,6 +113,7 @@ fn words(format: FormatName) -> (&'static str, &'static str) {
         FormatName::Csv => ("Text (CSV)", "The same tables as text."),
         FormatName::Vtk => ("ParaView", "Files of VTK: open vtk/grains.pvd."),
         FormatName::Ovito => ("OVITO", "Dumps as LAMMPS writes them: open ovito/grains.dump."),
+        FormatName::Fields => ("Fields", "Smoothed fields for ParaView: open fields/fields.pvd."),
     }
 }
 

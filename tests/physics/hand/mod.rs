@@ -132,6 +132,113 @@ fn what_finds_no_room_or_is_not_there_is_refused_and_changes_nothing() {
 }
 
 #[test]
+fn a_grain_that_is_added_in_motion_is_one_of_the_scene() {
+    let mut listed = heap();
+    let Disc { position, radius } = far(1.5 * RADIUS);
+    let velocity = DVec2::new(0.3, -0.2);
+    listed.grains.push(Grain { velocity, ..Grain::at_rest(position, radius) });
+    let (mut added, mut listed) = (start(&heap()), start(&listed));
+    added.add_grain(far(1.5 * RADIUS), velocity).expect("there is room");
+    for run in [&mut added, &mut listed] {
+        take_steps(run, 40);
+    }
+    assert_eq!(bits(&added, 0..13), bits(&listed, 0..13));
+    let said = added.add_grain(far(RADIUS), DVec2::new(f64::NAN, 0.0)).expect_err("no number");
+    assert!(said.to_string().starts_with("velocity of a new grain is [NaN, 0]"), "{said}");
+    assert_eq!(added.world().grains.len(), 13);
+}
+
+/// Of a run's last step: the largest part of a grain's change of momentum that weight, body forces and contacts leave open, in
+/// the largest body force times Δt; then the same of the change of kinetic energy and the works, in that energy.
+fn left_open(run: &mut Simulation) -> [f64; 2] {
+    let before = run.world().grains.velocities.clone();
+    let energy = run.observables().kinetic_energy;
+    let forces = run.body_forces().to_vec();
+    let now = *run.step().expect("a finite state");
+    let grains = &run.world().grains;
+    let body_force = |grain: usize| forces.get(grain).copied().unwrap_or_default();
+    let mut open: Vec<DVec2> = (0..grains.len())
+        .map(|grain| {
+            let changed = grains.velocities[grain] - before[grain] - now.time_step_secs * GRAVITY;
+            grains.masses[grain] * changed - now.time_step_secs * body_force(grain)
+        })
+        .collect();
+    for contact in run.moment().contacts {
+        let impulse = now.time_step_secs * contact.force;
+        open[contact.grain as usize] -= impulse;
+        if let OtherBody::Grain(other) = contact.other {
+            open[other as usize] += impulse;
+        }
+    }
+    let largest = forces.iter().fold(f64::MIN_POSITIVE, |most, force| most.max(force.length()));
+    let open = open.iter().fold(0f64, |most, open| most.max(open.length()));
+    let works = now.normal_work + now.tangential_work + now.gravity_work;
+    [
+        open / (largest * now.time_step_secs),
+        (now.kinetic_energy - energy - works).abs() / now.kinetic_energy,
+    ]
+}
+
+#[test]
+fn body_forces_are_in_momentum_and_works_of_every_way_and_are_held() {
+    for (way, scene) in in_every_way() {
+        let mut run = after(&scene, 20);
+        let weight = run.world().grains.masses[0] * GRAVITY.length();
+        let forces: Vec<DVec2> =
+            (0..12).map(|grain| 3.0 * weight * DVec2::from_angle(f64::from(grain))).collect();
+        let mut without = run.clone();
+        run.set_body_forces(&forces).expect("sound forces");
+        for _ in 0..10 {
+            let [momentum, energy] = left_open(&mut run);
+            // It keeps neither.
+            let is_exact = momentum < 1e-9 && energy < 1e-9;
+            assert!(is_exact || scene.stepper == Stepper::Avbd, "{way}: {momentum} {energy}");
+        }
+        take_steps(&mut without, 10);
+        assert_ne!(bits(&run, 0..12), bits(&without, 0..12), "{way}");
+        run.add_grain(far(RADIUS), DVec2::ZERO).expect("there is room");
+        run.edit(&Edit::Remove(3)).expect("it is there");
+        let held = run.body_forces();
+        assert_eq!(held.len(), 12, "{way}");
+        assert_eq!([held[3], held[11]], [forces[4], DVec2::ZERO], "{way}");
+        run.set_body_forces(&[DVec2::ZERO; 12]).expect("none");
+        assert!(run.body_forces().is_empty(), "{way}");
+    }
+}
+
+#[test]
+fn a_weight_that_is_held_up_is_none() {
+    for (&stepper, part) in pairs(Stepper::ALL, [1.0, 0.5]) {
+        let mut scene = heap();
+        scene.stepper = stepper;
+        scene.boundaries.clear();
+        scene.grains.truncate(1);
+        let Ok(mut run) = scene.simulation() else { continue };
+        let force = -part * run.world().grains.masses[0] * GRAVITY;
+        run.set_body_forces(&[force]).expect("a force");
+        take_steps(&mut run, 50);
+        let expected = (1.0 - part) * run.time_secs() * GRAVITY;
+        assert!(run.velocity(0).distance(expected) < 1e-12, "{stepper}: {}", run.velocity(0));
+    }
+}
+
+#[test]
+fn body_forces_of_other_grains_or_none_are_refused() {
+    let mut run = after(&heap(), 5);
+    let none = [DVec2::ZERO; 12];
+    let mut infinite = none;
+    infinite[7].y = f64::INFINITY;
+    for (forces, expected) in [
+        (&none[1..], "body_forces is 11, but must be 12, one a grain"),
+        (&infinite, "body_forces[7] is [0, inf], but must be finite"),
+    ] {
+        let said = run.set_body_forces(forces).expect_err(expected).to_string();
+        assert_eq!(said, expected);
+    }
+    assert!(run.body_forces().is_empty());
+}
+
+#[test]
 fn slump_counts_a_new_grain_from_where_it_is_put() {
     let mut run = after(&heap(), 60);
     let settled = run.observables().slump;

@@ -190,9 +190,11 @@ fn check_report(folder: &Path) {
 #[test]
 fn what_is_no_experiment_method_or_number_is_refused_by_name() {
     let folder = folder();
-    let cases: [(&[&str], &str); 6] = [
+    let cases: [(&[&str], &str); 8] = [
         (&["hourglass"], "elasticity"),
         (&["--methods", "gauss"], "nsgs"),
+        (&["--stepper", "euler"], "range"),
+        (&["--stepper", "dem", "--sweeps", "5"], "sweeps is given, but must be left out under dem"),
         (&["--time-steps", "1e-3,-1"], "time-steps is -1"),
         (&["--sweeps", "0"], "sweeps is 0"),
         (&["--sweeps", "5,5"], "sweeps is 5 twice"),

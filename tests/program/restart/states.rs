@@ -146,6 +146,20 @@ fn a_pile_that_collapses_goes_on_for_long() {
 }
 
 #[test]
+fn body_forces_go_on() {
+    let scene = built_in("pile").expect("a scene");
+    for &stepper in Stepper::ALL {
+        let mut simulation = start(&Scene { stepper, ..scene.clone() });
+        let masses = simulation.world().grains.masses.clone();
+        let forces: Vec<DVec2> = masses.iter().map(|mass| DVec2::new(20.0 * mass, 0.0)).collect();
+        simulation.set_body_forces(&forces).expect("sound forces");
+        simulation.take_steps(5).expect("finite states");
+        let end = goes_on(&scene, &simulation, 10, stepper.name());
+        assert_eq!(end.body_forces(), forces, "{stepper}");
+    }
+}
+
+#[test]
 fn a_spring_that_pulls_and_walls_that_move_go_on() {
     let scene = built_in("moving-walls").expect("a scene");
     let mut simulation = start(&scene);

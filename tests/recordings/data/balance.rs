@@ -389,6 +389,39 @@ fn walls_tell_of_strain_force_and_work() {
 }
 
 #[test]
+fn walls_have_the_work_and_torque_of_all_steps_between_two_frames() {
+    // The works are those of steps, but of a wall that a force drives, which has two speeds in a step, as in biaxial.
+    for (name, bond, off_by) in
+        [("vibrated", 0.0, 1e-10), ("biaxial", 0.0, 5e-3), ("drum", 10.0, 1e-9)]
+    {
+        let mut scene = scene(name);
+        scene.parameters.time_step_secs = 1e-3;
+        scene.parameters.bond = bond;
+        let mut run = scene.simulation().expect("a scene");
+        run.take_steps(200).expect("finite states");
+        let mut sums = ForceSums::default();
+        sums.follow(&run);
+        let (mut works, mut size) = (0.0, 0.0);
+        for _ in 0..40 {
+            let work = run.step().expect("a finite state").wall_work;
+            works += work;
+            size += work.abs();
+            sums.follow(&run);
+        }
+        let frame = Frame::new(0, run.moment(), &sums.take());
+        let found = numbers(&frame.walls, "work_between");
+        let off = (found.iter().sum::<f64>() - works).abs() / size;
+        assert!(size > 0.0 && off < off_by, "{name}: {off} of {works}, {found:?}");
+        if name == "drum" {
+            let [torque, spin] =
+                ["mean_torque", "omega"].map(|name| numbers(&frame.walls, name)[0]);
+            let by_torque = -0.04 * torque * spin;
+            assert!((by_torque - found[0]).abs() < off_by * works.abs(), "{by_torque} {found:?}");
+        }
+    }
+}
+
+#[test]
 fn a_shear_without_fluctuations_has_no_kinetic_pressure() {
     let run = scene("shear-periodic").simulation().expect("a scene");
     let pressure = numbers(&Table::of_measures(&run.moment()), "kinetic_pressure")[0];

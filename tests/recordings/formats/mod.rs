@@ -98,7 +98,7 @@ fn after<'a>(mut text: &'a str, pattern: &str) -> &'a str {
     text
 }
 
-const FORMATS: &[FormatName] = &[FormatName::Vtk, FormatName::Ovito];
+const FORMATS: &[FormatName] = &[FormatName::Vtk, FormatName::Ovito, FormatName::Fields];
 
 fn start(folder: &Path) -> Recording {
     Recording::start(folder, FORMATS, &about(), false).expect("a recording")

@@ -1,6 +1,6 @@
 //! `.vtp` files: what the XML says, and that every number is in them bit by bit.
 
-use super::{THIRD, after, start, write_frames};
+use super::{THIRD, after, moment, start, write_frames};
 use crate::program::*;
 
 const GRAINS: &str = r#"<?xml version="1.0"?>
@@ -17,7 +17,7 @@ const GRAINS: &str = r#"<?xml version="1.0"?>
       <DataArray type="Float64" Name="pile_mean_stress_yy" NumberOfTuples="1" format="appended" offset="…
       <DataArray type="Int64" Name="wall_id" NumberOfTuples="2" format="appended" offset="…
 …
-      <DataArray type="Float64" Name="wall_mean_fy" NumberOfTuples="2" format="appended" offset="…
+      <DataArray type="Float64" Name="wall_work_between" NumberOfTuples="2" format="appended" offset="…
     </FieldData>
     <Piece NumberOfPoints="4" NumberOfVerts="4" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
       <PointData Scalars="radius">
@@ -232,4 +232,23 @@ fn what_is_written_for_other_programs_is_refused_as_an_initial_state() {
     assert_refused(&bare, "is a file of VTK");
     assert_refused(&folder.path().join("ovito/grains.dump"), "is a LAMMPS dump");
     assert_refused(folder.path(), "has grains for other programs alone");
+}
+
+#[test]
+fn fields_of_grains_that_are_far_apart_are_smoothed_more() {
+    let folder = folder();
+    let mut recording = start(folder.path());
+    let mut far = moment(10);
+    far.grains[1].position.x = 1e6;
+    recording.add(moment(0)).expect("a frame");
+    recording.add(far).expect("a frame");
+    recording.finish().expect("files");
+    let widths = ["fields_000000.vti", "fields_000001.vti"].map(|name| {
+        let text =
+            String::from_utf8_lossy(&bytes(folder.path().join("fields").join(name))).into_owned();
+        let (_, rest) = text.split_once("Name=\"smoothing_width\"").expect("a width");
+        let (_, number) = rest.split_once('>').expect("a number");
+        number.split('<').next().and_then(|number| number.parse::<f64>().ok()).expect("a number")
+    });
+    assert!(widths[0] == 1.0 && widths[1] > 1.0 && widths[1] < 100.0, "{widths:?}");
 }

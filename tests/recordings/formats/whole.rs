@@ -94,6 +94,7 @@ fn check(folder: &Path) -> usize {
         assert!(dump.iter().copied().eq((0..dump.len() as u64).map(|number| 10 * number)));
         frames_of_series(&folder.join(format!("vtk/{kind}.pvd"))).len()
     });
+    frames_of_series(&folder.join("fields/fields.pvd"));
     of_kind[1]
 }
 
@@ -175,7 +176,7 @@ fn rolled_back_frames_are_as_if_they_had_never_been() {
         write_frames(&mut start(rolled.path()), 0..written);
         // A step that no frame has: it lies after the last one that stays.
         let mut later = go_on(rolled.path(), 10 * kept - 1);
-        assert_eq!(names(rolled.path()).len() as u64, 5 + 2 * kept, "{written}, {kept}");
+        assert_eq!(names(rolled.path()).len() as u64, 6 + 3 * kept, "{written}, {kept}");
         write_frames(&mut later, kept..written + 2);
         write_frames(&mut start(straight.path()), 0..written + 2);
         assert_eq!(names(rolled.path()), names(straight.path()), "{written}, {kept}");
@@ -210,7 +211,7 @@ fn a_frame_that_only_some_formats_have_is_written_again() {
 fn an_earlier_recording_is_removed_with_all_its_files() {
     let folder = folder();
     write_frames(&mut start(folder.path()), 0..3);
-    assert_eq!(names(folder.path()).len(), 11);
+    assert_eq!(names(folder.path()).len(), 15);
     write(folder.path().join("vtk/grains_1.vtp"), "not of a recording");
     drop(Recording::start(folder.path(), FORMATS, &about(), true).expect("a recording"));
     assert_eq!(names(folder.path()), ["vtk/grains_1.vtp"]);
@@ -230,5 +231,5 @@ fn names(folder: &Path) -> Vec<String> {
         let names = names_in(&folder.join(below)).into_iter();
         names.map(|name| format!("{below}/{name}")).collect::<Vec<_>>()
     };
-    [of("ovito"), of("vtk")].concat()
+    [of("fields"), of("ovito"), of("vtk")].concat()
 }

@@ -61,18 +61,23 @@ impl Simulation {
     /// Says in one sentence why it cannot be done; then nothing is changed.
     pub fn edit(&mut self, edit: &Edit) -> Result<()> {
         match *edit {
-            Edit::Add(disc) => self.add_grain(disc),
+            Edit::Add(disc) => self.add_grain(disc, DVec2::ZERO),
             Edit::Remove(grain) => self.remove_grain(grain as usize),
-            Edit::Draw { boundary, to } => self.draw(boundary as usize, to),
+            Edit::Draw { boundary, to } => {
+                self.draw(boundary as usize, to).map(|()| self.count_edit())
+            }
             Edit::LetGo => {
                 self.let_go();
+                self.count_edit();
                 Ok(())
             }
-        }?;
+        }
+    }
+
+    fn count_edit(&mut self) {
         self.edits += 1;
         let time_step_secs = self.settings.parameters.time_step_secs;
         self.surroundings = Arc::new(Surroundings::of(&self.state.world, time_step_secs));
-        Ok(())
     }
 
     /// Sets all grains' centres, m, and leaves velocities and impulses as they are. The ways of grains begin there, so that
@@ -109,7 +114,7 @@ impl Simulation {
     }
 
     /// Puts vectors of all grains in the place of those there are.
-    fn replace(&self, name: &str, there: &mut [DVec2], vectors: &[DVec2]) -> Result<()> {
+    pub(super) fn replace(&self, name: &str, there: &mut [DVec2], vectors: &[DVec2]) -> Result<()> {
         let (count, on_line) = (there.len(), self.state.physics.axes == 1);
         error::check(vectors.len() == count, name, vectors.len(), format!("{count}, one a grain"))?;
         let is_sound =
@@ -127,9 +132,16 @@ impl Simulation {
         self.edits as usize
     }
 
-    fn add_grain(&mut self, disc: Disc) -> Result<()> {
+    /// Puts a grain in as the last one, with that velocity, m/s.
+    ///
+    /// # Errors
+    /// Where there is no room for it, it is of another scene's size, or a number is not finite; then nothing is changed.
+    pub fn add_grain(&mut self, disc: Disc, velocity: DVec2) -> Result<()> {
         let Disc { mut position, radius } = disc;
         let world = &self.state.world;
+        let is_sound = velocity.is_finite() && !(self.state.physics.axes == 1 && velocity.y != 0.0);
+        let allowed = "finite, and along x where the scene is a line";
+        error::check(is_sound, "velocity of a new grain", velocity, allowed)?;
         if self.state.physics.axes == 1 {
             position.y = world.grains.positions[0].y;
         }
@@ -149,11 +161,12 @@ impl Simulation {
         }
         let mut grown = world.clone();
         let density = grown.grains.masses[0] / grown.grains.radii[0].powi(2) / std::f64::consts::PI;
-        grown.grains.push(&Grain::at_rest(position, radius), density);
+        grown.grains.push(&Grain { velocity, ..Grain::at_rest(position, radius) }, density);
         grown.validate(self.state.physics)?;
         self.state.add_last_grain(grown)?;
         self.watch.losses.add(position);
         self.initial_heights += position.y;
+        self.count_edit();
         Ok(())
     }
 
@@ -194,7 +207,9 @@ impl Simulation {
         error::check(count != 1, "grains", 1, "more than one where one is taken away")?;
         self.initial_heights -= self.state.world.grains.positions[grain].y;
         self.watch.losses.remove(grain);
-        self.state.remove_grain(grain)
+        self.state.remove_grain(grain)?;
+        self.count_edit();
+        Ok(())
     }
 
     fn draw(&mut self, boundary: usize, to: DVec2) -> Result<()> {

@@ -56,6 +56,10 @@ pub struct PairSum {
     pub normal: f64,
     /// Along (−n_y, n_x) as they were, on grain i, N·s.
     pub tangential: f64,
+    /// r × P about the origin, r where it touches grain i, N·m·s.
+    pub moment: f64,
+    /// What a surface of body j that moves did on grain i, J.
+    pub work: f64,
 }
 
 impl ForceSums {
@@ -77,11 +81,12 @@ impl ForceSums {
     }
 
     fn add(&mut self, simulation: &Simulation) {
-        let State { world, candidates, contacts, .. } = &simulation.state;
+        let State { world, candidates, contacts, walls, .. } = &simulation.state;
         let numbering = Numbering::of(world);
         let radii = &world.grains.radii;
         let Self { secs, pairs, stresses, .. } = self;
-        *secs += simulation.observables().time_step_secs;
+        let step_secs = simulation.observables().time_step_secs;
+        *secs += step_secs;
         stresses.resize(radii.len(), DMat2::ZERO);
         let (known, mut place) = (pairs.len(), 0);
         for Transmitted { contact, sums, vector, .. } in contacts.transmitted_in_step() {
@@ -103,6 +108,14 @@ impl ForceSums {
             sum.impulse += vector;
             sum.normal += sums.normal;
             sum.tangential += sums.tangential;
+            let i = contact.grain as usize;
+            // Where the grain was when the forces were.
+            let centre = world.grains.positions[i] - step_secs * world.grains.velocities[i];
+            sum.moment += (centre - (radii[i] + contact.gap) * contact.normal).perp_dot(vector);
+            if let Some(surface) = walls.surface_at(world, &contact, centre) {
+                let [normal_speed, tangential_speed] = surface.along(contact.normal);
+                sum.work += sums.normal * normal_speed + sums.tangential * tangential_speed;
+            }
             let mut add_stress = |grain: usize, gap: f64| {
                 let branch = (radii[grain] + gap) * contact.normal;
                 stresses[grain] += DMat2::from_cols(branch.x * vector, branch.y * vector);
@@ -124,7 +137,8 @@ impl ForceSums {
 impl PairSum {
     fn none((grain, number): (u32, u32), other: OtherBody) -> Self {
         let impulse = DVec2::ZERO;
-        Self { grain, other, number, steps: 0, impulse, normal: 0.0, tangential: 0.0 }
+        let (normal, tangential, moment, work) = (0.0, 0.0, 0.0, 0.0);
+        Self { grain, other, number, steps: 0, impulse, normal, tangential, moment, work }
     }
 
     fn key(&self) -> (u32, u32) {

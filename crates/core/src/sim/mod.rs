@@ -1,6 +1,7 @@
 //! The step, what it measures, and what it shows.
 
 mod alarm;
+mod body_forces;
 mod edits;
 mod force_sums;
 mod losses;

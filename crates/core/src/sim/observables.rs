@@ -77,7 +77,7 @@ pub struct Observables {
     /// slide, and on grains that crossed. None where no border shears.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub border_work: Option<f64>,
-    /// Work of the gravity field, and of a spring that pulls a grain, in this step, J.
+    /// Work of the gravity field, of body forces, and of a spring that pulls a grain, in this step, J.
     pub gravity_work: f64,
     /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), both sums over the grains that are not
     /// lost; 0 where Σ y_i(0) is 0.

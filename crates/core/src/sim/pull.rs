@@ -45,29 +45,29 @@ impl Pull {
     }
 
     /// The push of the spring in the next `time_step_secs`, where it pushes.
-    pub(super) fn push(
-        self,
-        world: &World,
-        axes: usize,
-        time_step_secs: f64,
-    ) -> Option<SpringPush> {
+    pub(super) fn push(self, world: &World, axes: usize, time_step_secs: f64) -> Option<Push> {
         let mut change = self.added_velocity(world, time_step_secs);
         if axes == 1 {
             change.y = 0.0;
         }
-        let (grain, speed) = (self.grain as usize, change.length());
-        (speed > 0.0).then(|| SpringPush { grain, direction: change / speed, speed })
+        Push::of(self.grain as usize, change)
     }
 }
 
-/// What a spring does to a grain in a step: by how much (m/s) it changes its velocity, and along which unit vector.
-pub(crate) struct SpringPush {
+/// What pushes a grain in a step: by how much (m/s) it changes its velocity, and along which unit vector.
+pub(crate) struct Push {
     grain: usize,
     direction: DVec2,
     speed: f64,
 }
 
-impl SpringPush {
+impl Push {
+    /// One that changes the velocity of a grain by `change`, m/s; none where it changes nothing.
+    pub(super) fn of(grain: usize, change: DVec2) -> Option<Self> {
+        let speed = change.length();
+        (speed > 0.0).then(|| Self { grain, direction: change / speed, speed })
+    }
+
     pub(super) fn apply<M: Model>(&self, bodies: &mut [M::Body<f64>]) {
         // A normal impulse against a fixed body changes the velocity by just itself.
         let normal = M::normal(self.direction.to_array());

@@ -75,6 +75,7 @@ impl Simulation {
                 contacts: ContactList::default(),
                 walls: Walls::default(),
                 pull: None,
+                body_forces: Vec::new(),
                 is_held: false,
                 time_step_of_impulses_secs: settings.parameters.time_step_secs,
             },
@@ -387,6 +388,9 @@ impl Simulation {
         }
         if state.pull.is_some_and(|pull| pull.grain as usize >= grains) {
             return Err(refuse("pull"));
+        }
+        if !(state.body_forces.is_empty() || state.body_forces.len() == grains) {
+            return Err(refuse("body_forces"));
         }
         if state.is_held && state.world.motions.is_empty() {
             return Err(Error::value("hand", "on no wall", "on the wall of the last motion"));

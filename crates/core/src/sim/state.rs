@@ -27,6 +27,8 @@ pub(crate) struct State {
     pub walls: Walls,
     /// A spring on one grain, from the next step on.
     pub pull: Option<Pull>,
+    /// A force on each grain beside gravity, N; empty where there is none.
+    pub body_forces: Vec<DVec2>,
     /// True where a hand holds a wall: then the last motion is its own.
     pub is_held: bool,
     /// Δt of the impulses in `contacts`, s.
@@ -139,6 +141,9 @@ impl State {
     pub(crate) fn remove_grain(&mut self, grain: usize) -> Result<()> {
         let number = grain as u32;
         self.world.grains.remove(grain);
+        if !self.body_forces.is_empty() {
+            self.body_forces.remove(grain);
+        }
         self.contacts.remove_body(number);
         self.look_anew()?;
         self.pull = self.pull.filter(|pull| pull.grain != number);
@@ -152,6 +157,9 @@ impl State {
     pub(crate) fn add_last_grain(&mut self, world: World) -> Result<()> {
         let number = world.grains.len() as u32 - 1;
         self.world = world;
+        if !self.body_forces.is_empty() {
+            self.body_forces.push(DVec2::ZERO);
+        }
         self.contacts.insert_body(number);
         self.look_anew()
     }

@@ -16,7 +16,7 @@ pub struct StepResult {
     pub report: SolveReport,
     /// Residual, contacts and works.
     pub measures: Measures,
-    /// Work of gravity and of a spring that pulls, J.
+    /// Work of gravity, body forces and a spring that pulls, J.
     pub gravity_work: f64,
     /// Work of the forces that drive walls, less what their damping took, J.
     pub drive_work: f64,
@@ -128,8 +128,7 @@ impl<'a, M: Model> Stage<'a, M> {
         state.begin(time_step_secs);
         let ahead = look_ahead(state);
         state.detect::<M>(ahead);
-        let pull = state.pull;
-        let push = pull.and_then(|pull| pull.push(&state.world, M::AXES, time_step_secs));
+        let pushes = state.pushes(M::AXES, time_step_secs);
         let State { world, physics, contacts, walls, .. } = &mut **state;
         let capture_speed = if physics.cohesion {
             parameters.capture_speed(world.gravity.magnitude())
@@ -148,7 +147,7 @@ impl<'a, M: Model> Stage<'a, M> {
             of: &surface_of,
         });
         problem.prepare(world, contacts, numbers, &settings.solver, rebound, surfaces);
-        if let Some(push) = push {
+        for push in pushes {
             push.apply::<M>(&mut problem.bodies.free);
             push.apply::<M>(&mut problem.bodies.now);
         }

@@ -147,6 +147,16 @@ impl Walls {
     /// How the surface of the other body of a contact goes, if that moves.
     #[inline]
     pub(crate) fn surface(&self, world: &World, contact: &Contact) -> Option<Surface> {
+        self.surface_at(world, contact, world.grains.positions[contact.grain as usize])
+    }
+
+    /// The same of a contact whose grain was elsewhere, m.
+    pub(crate) fn surface_at(
+        &self,
+        world: &World,
+        contact: &Contact,
+        centre: DVec2,
+    ) -> Option<Surface> {
         if self.moving.is_empty() {
             return None;
         }
@@ -156,8 +166,8 @@ impl Walls {
             Other::Feature(feature) => (self.of_feature[feature], self.shapes[feature]),
         };
         let wall = self.moving.get(number as usize)?;
-        let (grain, grains) = (contact.grain as usize, &world.grains);
-        let place = grains.positions[grain] - (grains.radii[grain] + contact.gap) * contact.normal;
+        let radius = world.grains.radii[contact.grain as usize];
+        let place = centre - (radius + contact.gap) * contact.normal;
         let velocity = wall.velocity.at(place);
         let driven = wall.driver.map(|Driver { number, axis, .. }| {
             let along_tangent = if is_pushed { 0.0 } else { axis.dot(contact.normal.perp()) };

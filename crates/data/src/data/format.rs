@@ -9,7 +9,7 @@ use super::means::Means;
 #[cfg(feature = "data")]
 use super::parquet::Parquet;
 use super::table::Table;
-use super::vtk::Vtk;
+use super::vtk::{self, Vtk};
 use crate::error::{Error, Result};
 use crate::granular::{MomentMeasures, measure};
 use crate::scene::{DataSettings, FormatName};
@@ -138,7 +138,8 @@ pub(super) fn start_format(
         #[cfg(not(feature = "data"))]
         FormatName::Parquet => Err(Error::value("data-format", format.name(), "built in")),
         FormatName::Csv => Ok(Box::new(Csv::start(folder, facts)?)),
-        FormatName::Vtk => Ok(Box::new(Vtk::start(folder, facts)?)),
+        FormatName::Vtk => Ok(Box::new(Vtk::start(folder, &vtk::BODIES, facts)?)),
+        FormatName::Fields => Ok(Box::new(Vtk::start(folder, &vtk::FIELDS, facts)?)),
         FormatName::Ovito => Ok(Box::new(Lammps::start(folder, facts)?)),
     }
 }

@@ -5,11 +5,11 @@ use glam::{DMat2, DVec2};
 
 use super::columns::{OTHER_KINDS, OtherBodies};
 use super::table::Table;
-use super::walls::{is_of, walls};
+use super::walls::{is_of, place_of, walls};
 use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber, Word};
 use crate::column_spec::{ColumnSpec, column};
 use crate::granular::GrainMeasures;
-use crate::sim::{ForceSums, Moment, PairSum};
+use crate::sim::{ForceSums, Moment, PairSum, Surroundings};
 
 /// Tables of means, or columns for those that there are.
 pub(super) struct Means {
@@ -38,9 +38,18 @@ impl Means {
         let counts = |(_, grain): &(&DMat2, &GrainMeasures)| !grain.cell_area.is_nan();
         let of_pile = stresses.iter().zip(grains).filter(counts).map(|(&stress, _)| stress);
         let of_pile = PileMeans { secs: *secs, stress: mean(of_pile.sum(), area) };
+        let Surroundings { periodic, .. } = *moment.surroundings;
         let of_wall = |(wall, _)| {
-            let impulses = pairs.iter().filter(|pair| is_of(pair.other, &wall));
-            -impulses.map(|pair| pair.impulse).sum::<DVec2>() / *secs
+            let sums = || pairs.iter().filter(|pair| is_of(pair.other, &wall));
+            let impulse = sums().map(|pair| pair.impulse).sum::<DVec2>();
+            let about_origin = sums().map(|pair| pair.moment).sum::<f64>();
+            let torque = place_of(&wall, &moment.surroundings).perp_dot(impulse) - about_origin;
+            WallMeans {
+                force: -impulse / *secs,
+                // What goes round has no one place to take it about.
+                torque: if periodic.is_none() { torque / *secs } else { f64::NAN },
+                work: if *secs > 0.0 { sums().map(|pair| pair.work).sum() } else { f64::NAN },
+            }
         };
         Self {
             pairs: pairs_table(sums, moment),
@@ -102,6 +111,13 @@ fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
     Table::new("pairs", PAIR_COLUMNS, &rows, &others.names)
 }
 
+impl Table {
+    /// A row a pair that has transmitted anything.
+    pub fn of_pairs(sums: &ForceSums, moment: &Moment) -> Self {
+        pairs_table(sums, moment)
+    }
+}
+
 pub(super) fn no_pairs() -> Table {
     Table::new("pairs", PAIR_COLUMNS, &[], &[])
 }
@@ -140,15 +156,33 @@ pub(super) fn of_pile(means: &[PileMeans]) -> Table {
     Table::new("measures", &secs, means, &[]).beside(stresses)
 }
 
-pub(super) fn of_walls(forces: &[DVec2]) -> Table {
-    const COLUMNS: &[ColumnSpec<DVec2>] = &[
+pub(super) struct WallMeans {
+    force: DVec2,
+    torque: f64,
+    work: f64,
+}
+
+pub(super) fn of_walls(means: &[WallMeans]) -> Table {
+    const COLUMNS: &[ColumnSpec<WallMeans>] = &[
         column(
             "mean_fx",
             "N",
             "force of the grains on it, mean over the time since the frame before",
-            SomeNumber(|force| some(force.x)),
+            SomeNumber(|means| some(means.force.x)),
         ),
-        column("mean_fy", "N", "likewise", SomeNumber(|force| some(force.y))),
+        column("mean_fy", "N", "likewise", SomeNumber(|means| some(means.force.y))),
+        column(
+            "mean_torque",
+            "N m",
+            "torque likewise, about (x, y) as it is now; none where borders wrap",
+            SomeNumber(|means| some(means.torque)),
+        ),
+        column(
+            "work_between",
+            "J",
+            "what it did on grains since the frame before, as fast as it was at the end of each step",
+            SomeNumber(|means| some(means.work)),
+        ),
     ];
-    Table::new("walls", COLUMNS, forces, &[])
+    Table::new("walls", COLUMNS, means, &[])
 }

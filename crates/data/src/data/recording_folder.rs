@@ -99,7 +99,8 @@ pub fn remove_recording(path: &Path) -> Result<()> {
     }
     let tables = empty_tables().map(|table| table.name);
     drop(folder);
-    for inner in tables.chain([csv::FOLDER, vtk::FOLDER, lammps::FOLDER, ""]) {
+    for inner in tables.chain([csv::FOLDER, vtk::BODIES.name, vtk::FIELDS.name, lammps::FOLDER, ""])
+    {
         // One that is not empty stays.
         let _ = std::fs::remove_dir(path.join(inner));
     }
@@ -117,7 +118,9 @@ fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
     all.extend(files_named(&folder.join(csv::FOLDER), |name| {
         name.strip_suffix(".csv").is_some_and(|name| tables.contains(&name))
     })?);
-    all.extend(files_named(&folder.join(vtk::FOLDER), vtk::is_name_of_file)?);
+    for files in [vtk::BODIES, vtk::FIELDS] {
+        all.extend(files_named(&folder.join(files.name), |name| files.has_named(name))?);
+    }
     all.extend(files_named(&folder.join(lammps::FOLDER), |name| lammps::FILES.contains(&name))?);
     Ok(all)
 }

@@ -104,7 +104,7 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "gravity_work",
         "J",
-        "impulse of the gravity field in the step times the mean of the velocities before and after: with the other \
+        "impulse of gravity, and of forces from outside, in the step times the mean of the velocities before and after: with the other \
          works it is the change of kinetic energy",
         Number(|row| row.gravity_work),
     ),

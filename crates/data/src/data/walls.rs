@@ -151,17 +151,14 @@ fn row(
     motion: Option<f64>,
     wall: MotionView,
 ) -> (WallTableRow, String) {
-    let Surroundings { boundaries, fixed_discs, periodic, .. } = &*moment.surroundings;
+    let Surroundings { boundaries, periodic, .. } = &*moment.surroundings;
     let shapes = wall.boundaries.iter().map(|&it| format!("{} {it}", boundaries[it].word()));
     let discs = match wall.fixed_discs.len() {
         0 => None,
         count => Some(format!("{count} fixed discs")),
     };
     let name = shapes.chain(discs).collect::<Vec<_>>().join(", ");
-    let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));
-    let of_disc = || wall.fixed_discs.first().map(|&it| fixed_discs[it].position);
-    let turns = wall.angular_velocity != 0.0;
-    let place = if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() };
+    let place = place_of(&wall, &moment.surroundings);
     let secs = moment.observables.time_step_secs;
     let (mut force, mut torque, mut work) = (DVec2::ZERO, 0.0, 0.0);
     for contact in moment.contacts.iter().filter(|contact| is_of(contact.other, &wall)) {
@@ -188,6 +185,15 @@ fn row(
         work,
     };
     (row, name)
+}
+
+/// Where a wall is, m: its pivot if it turns, or a point of its first boundary, or its first disc.
+pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 {
+    let Surroundings { boundaries, fixed_discs, .. } = surroundings;
+    let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));
+    let of_disc = || wall.fixed_discs.first().map(|&it| fixed_discs[it].position);
+    let turns = wall.angular_velocity != 0.0;
+    if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() }
 }
 
 /// True where a body goes as part of a wall.

@@ -15,6 +15,7 @@
 //! step, while grains are where that step has brought them.
 
 mod cells;
+mod fields;
 mod histograms;
 mod mean_flow;
 mod measures;
@@ -22,6 +23,7 @@ mod network;
 mod stress;
 
 pub use crate::column_spec::{CellValue, ColumnSpec};
+pub use fields::Fields;
 pub use histograms::{Histogram, histograms};
 pub use measures::{GrainMeasures, PileMeasures};
 

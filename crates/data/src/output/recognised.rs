@@ -16,7 +16,7 @@ const TAIL: u64 = 4096;
 /// How lines of journals begin.
 const OF_JOURNAL: &[u8] = b"{\"checksum\":\"";
 /// How files begin that this program writes, and what else is found there.
-const BEGINNINGS: [(&[u8], &[u8]); 12] = [
+const BEGINNINGS: [(&[u8], &[u8]); 13] = [
     (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
     (b"{\n  \"program\": \"slump\",\n", b""),
     (b"{\n  \"about\": {\n", b"\n  \"program\": \"slump\",\n"),
@@ -29,6 +29,10 @@ const BEGINNINGS: [(&[u8], &[u8]); 12] = [
     (b"ITEM: TIMESTEP\n", b" x_unwrapped y_unwrapped "),
     (b"ITEM: TIME\n", b"\nITEM: ENTRIES id name motion "),
     (b"slump-state ", b""),
+    (
+        b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <ImageData WholeExtent=\"",
+        b" Name=\"smoothing_width\" ",
+    ),
 ];
 /// Of what other programs read and have no word for who wrote it.
 const OF_VTK: [&[u8]; 2] = [

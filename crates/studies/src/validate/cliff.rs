@@ -88,10 +88,11 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
     };
     let fallen = "Abramian et al. 2020, Gans et al. 2023: it falls";
     vec![
-        quantity(
+        PublishedQuantity::correlation(
             "rank correlation of run-out and Bond",
+            &system,
             &trends,
-            [f64::NEG_INFINITY, -1.0, -0.7],
+            [-1.0, -1.0, -0.7],
             fallen,
         ),
         quantity(

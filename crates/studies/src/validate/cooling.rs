@@ -146,13 +146,19 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::Stepper;
     use crate::solver::Method;
     use crate::validate::variants::SolveBudget;
 
     #[test]
     fn a_gas_cools_as_haff_says_and_slower_where_it_loses_less() {
         let budget = SolveBudget::Sweeps(10);
-        let variant = StepVariant { method: Method::Nsgs, time_step_secs: 2e-3, budget };
+        let variant = StepVariant {
+            stepper: Stepper::Moreau,
+            method: Method::Nsgs,
+            time_step_secs: 2e-3,
+            budget,
+        };
         let run = || cool(225, 3, variant).expect("a gas that stays finite");
         let time = run().reading("time");
         assert!((time - 1.0).abs() < 0.1, "{time}");

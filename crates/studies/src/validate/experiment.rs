@@ -228,9 +228,23 @@ impl PublishedQuantity {
         Self { name, system, published, band, provenance, source, measured }
     }
 
-    /// Relative deviation of the mean from the published value.
-    pub(super) fn error(&self) -> f64 {
-        (self.measured.mean / self.published - 1.0).abs()
+    /// The mean rank correlation of runs that are apart from each other. None is larger than 1, so the interval ends there.
+    pub(super) fn correlation(
+        name: impl Into<String>,
+        system: &str,
+        values: &[f64],
+        band: [f64; 3],
+        source: &'static str,
+    ) -> Self {
+        let mut quantity = Self::new(name, system, values, band, (SourceKind::Memory, source));
+        let Mean { low, high, .. } = &mut quantity.measured;
+        (*low, *high) = (low.max(-1.0), high.min(1.0));
+        quantity
+    }
+
+    /// Relative deviation of the mean from the published value; none where that is 0.
+    pub(super) fn error(&self) -> Option<f64> {
+        (self.published != 0.0).then(|| (self.measured.mean / self.published - 1.0).abs())
     }
 
     /// How the two compare, where all runs are sound.
@@ -266,6 +280,23 @@ mod tests {
         // One value alone tells nothing of its spread, and what is no number tells nothing.
         assert_eq!(quantity(&[2.0]).verdict(), Agreement::NotDecided);
         assert_eq!(quantity(&[f64::NAN, 2.0]).verdict(), Agreement::NotDecided);
-        assert!((quantity(&[2.2, 2.2]).error() - 0.1).abs() < 1e-12);
+        assert!((quantity(&[2.2, 2.2]).error().expect("a value") - 0.1).abs() < 1e-12);
+        let of = (SourceKind::Exact, "arithmetic");
+        let of_none = PublishedQuantity::new("none", "", &[0.01, 0.02], [-0.1, 0.0, 0.1], of);
+        assert_eq!(of_none.error(), None);
+    }
+
+    #[test]
+    fn no_correlation_is_beyond_1() {
+        let of = |values: &[f64]| {
+            PublishedQuantity::correlation("trend", "", values, [0.5, 1.0, 1.0], "it grows")
+        };
+        // Student's interval would reach 1.27.
+        let few = of(&[1.0, 1.0, 0.5, 1.0]);
+        assert_eq!(few.measured.high, 1.0);
+        assert_eq!(few.verdict(), Agreement::NotDecided);
+        assert_eq!(of(&[0.9, 1.0, 1.0, 0.95]).verdict(), Agreement::Agrees);
+        assert_eq!(of(&[-1.0, -1.0, -0.95, -1.0]).verdict(), Agreement::Differs);
+        assert_eq!(of(&[-1.0, -1.0, -0.5, -1.0]).measured.low, -1.0);
     }
 }

@@ -29,13 +29,14 @@ mod watched;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use self::experiment::Experiment;
+use self::experiment::{Experiment, ExperimentCases};
 use self::runs::run_all;
 use self::variants::step_variants;
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, print_line, print_text, write_file};
 use crate::report::write_sheet;
+use crate::sim::Stepper;
 use crate::solver::Method;
 
 /// All experiments, in the order of the report.
@@ -61,6 +62,8 @@ pub struct ValidateOptions {
     pub out: PathBuf,
     /// Smaller systems and fewer of them, in a few minutes.
     pub quick: bool,
+    /// The way to step. Experiments that are about methods of their own are left out but under `moreau`.
+    pub stepper: Stepper,
     /// Methods; an empty list is left to the program, as in the next ones.
     pub methods: Vec<Method>,
     /// Δt, s.
@@ -82,13 +85,16 @@ pub fn experiment_names() -> Vec<&'static str> {
 /// Where a value is outside its range, the folder cannot be written, or a scene is not sound.
 pub fn validate(options: &ValidateOptions) -> Result<()> {
     let started = Instant::now();
-    let ValidateOptions { experiments, out, quick, methods, time_steps_secs, sweeps, tolerances } =
-        options;
-    let variants = step_variants(*quick, methods, time_steps_secs, sweeps, tolerances)?;
+    let ValidateOptions { experiments, out, quick, stepper, .. } = options;
+    let ValidateOptions { methods, time_steps_secs, sweeps, tolerances, .. } = options;
+    let variants = step_variants(*quick, *stepper, methods, time_steps_secs, sweeps, tolerances)?;
     check_writable("out", out)?;
     let wanted: Vec<&'static Experiment> = EXPERIMENTS
         .iter()
         .filter(|one| experiments.is_empty() || experiments.iter().any(|name| name == one.name))
+        .filter(|one| {
+            *stepper == Stepper::Moreau || matches!(one.cases, ExperimentCases::Chosen(_))
+        })
         .collect();
     let machine = Machine::this()?;
     let runner = machine.runner(out, *quick, "validation")?;

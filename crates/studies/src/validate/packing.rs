@@ -137,13 +137,19 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::Stepper;
     use crate::solver::Method;
     use crate::validate::variants::SolveBudget;
 
     #[test]
     fn a_small_packing_at_rest_has_as_many_contacts_as_it_needs() {
         let budget = SolveBudget::Residual(1e-8);
-        let variant = StepVariant { method: Method::Newton, time_step_secs: 2e-4, budget };
+        let variant = StepVariant {
+            stepper: Stepper::Moreau,
+            method: Method::Newton,
+            time_step_secs: 2e-4,
+            budget,
+        };
         let run = pack(0.0, 60, 8.0, 2, variant).expect("a packing");
         assert!(run.reading("energy") < 1e-6, "{}", run.reading("energy"));
         assert!((run.reading("coordination") - 4.0).abs() < 0.1, "{}", run.reading("coordination"));

@@ -27,7 +27,7 @@ use crate::scene::Scene;
 use crate::scene::experiments::{ShearCell, shear_of};
 use crate::scene::stability::{DIAMETER, GRAVITY};
 use crate::sim::{Moment, OtherBody};
-use crate::solver::METHODS;
+use crate::solver::{METHODS, MethodInfo};
 use crate::statistics::{mean, slope};
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
@@ -75,7 +75,9 @@ pub(super) fn layers(
     variant: StepVariant,
     layers: &[((&'static str, f64), f64, f64)],
 ) -> Vec<ExperimentCase> {
-    if !METHODS.iter().any(|info| info.method == variant.method && info.takes_drives) {
+    let by_method = |info: &&MethodInfo| info.method == variant.method;
+    let takes_drives = METHODS.iter().find(by_method).is_some_and(|info| info.takes_drives);
+    if !(variant.stepper.info().takes_drives && takes_drives) {
         return Vec::new();
     }
     let (cell, seeds) = if quick {

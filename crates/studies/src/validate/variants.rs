@@ -4,6 +4,7 @@ use std::fmt::{Debug, Display};
 
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings};
 
 /// Sweeps within which a step is to be solved to a residual.
@@ -29,6 +30,7 @@ impl SolveBudget {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StepVariant {
+    pub stepper: Stepper,
     pub method: Method,
     /// Δt, s.
     pub time_step_secs: f64,
@@ -37,8 +39,16 @@ pub(super) struct StepVariant {
 
 impl StepVariant {
     pub(super) fn words(&self) -> String {
-        let Self { method, time_step_secs, budget } = self;
-        format!("{method}, Δt {time_step_secs:e} s, {}", budget.words())
+        let Self { stepper, method, time_step_secs, budget } = self;
+        let of_step = format!("Δt {time_step_secs:e} s");
+        match stepper {
+            Stepper::Moreau => format!("{method}, {of_step}, {}", budget.words()),
+            stepper if stepper.reads("solver") => {
+                format!("{stepper}, {method}, {of_step}, {}", budget.words())
+            }
+            // Its effort is its own.
+            stepper => format!("{stepper}, {of_step}"),
+        }
     }
 
     pub(super) fn apply(&self, scene: &mut Scene) {
@@ -47,7 +57,9 @@ impl StepVariant {
             SolveBudget::Sweeps(count) => (f64::MIN_POSITIVE, count),
             SolveBudget::Residual(residual) => (residual, MOST_SWEEPS),
         };
+        scene.stepper = self.stepper;
         scene.solver = SolverSettings::to_residual(self.method, tolerance, max_sweeps);
+        scene.set_settings(scene.settings().with_only_what_is_taken());
     }
 }
 
@@ -55,9 +67,10 @@ impl StepVariant {
 /// unasked.
 ///
 /// # Errors
-/// Names the first value outside its range, or one that is given twice.
+/// Names the first value outside its range, one that is given twice, or one that the stepper does not read.
 pub(super) fn step_variants(
     quick: bool,
+    stepper: Stepper,
     methods: &[Method],
     time_steps_secs: &[f64],
     sweeps: &[u32],
@@ -72,11 +85,20 @@ pub(super) fn step_variants(
     check_different("time-steps", time_steps_secs)?;
     check_different("sweeps", sweeps)?;
     check_different("tolerances", tolerances)?;
+    if !stepper.reads("solver") {
+        let given = [!methods.is_empty(), !sweeps.is_empty(), !tolerances.is_empty()];
+        let names = ["methods", "sweeps", "tolerances"];
+        if let Some((name, _)) = names.iter().zip(given).find(|(_, given)| *given) {
+            let allowed = format!("left out under {stepper}, which solves no problem by a method");
+            return Err(Error::value(*name, "given", allowed));
+        }
+    }
     let sweeps = sweeps.iter().map(|&count| SolveBudget::Sweeps(count));
     let tolerances = tolerances.iter().map(|&residual| SolveBudget::Residual(residual));
     let mut budgets: Vec<SolveBudget> = sweeps.chain(tolerances).collect();
     if budgets.is_empty() {
         budgets = vec![SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
+        budgets.truncate(if stepper.reads("solver") { 2 } else { 1 });
     }
     let methods = if methods.is_empty() { &[Method::Nsgs] } else { methods };
     let time_steps_secs: &[f64] = match (time_steps_secs.is_empty(), quick) {
@@ -87,7 +109,7 @@ pub(super) fn step_variants(
     let mut variants = Vec::new();
     for &method in methods {
         for &time_step_secs in time_steps_secs {
-            let of = |&budget| StepVariant { method, time_step_secs, budget };
+            let of = |&budget| StepVariant { stepper, method, time_step_secs, budget };
             variants.extend(budgets.iter().map(of));
         }
     }
@@ -111,22 +133,28 @@ mod tests {
 
     #[test]
     fn what_is_asked_is_crossed_and_the_rest_is_chosen() {
-        let unasked = step_variants(true, &[], &[], &[], &[]).expect("a choice");
+        let unasked = step_variants(true, Stepper::Moreau, &[], &[], &[], &[]).expect("a choice");
         assert_eq!(unasked.len(), 2);
         let methods = [Method::Nsgs, Method::Newton];
-        let variants =
-            step_variants(true, &methods, &[1e-3, 1e-4], &[5], &[1e-6]).expect("a choice");
+        let variants = step_variants(true, Stepper::Moreau, &methods, &[1e-3, 1e-4], &[5], &[1e-6])
+            .expect("a choice");
         assert_eq!(variants.len(), 8);
         assert_eq!(variants[0].words(), "nsgs, Δt 1e-3 s, 5 sweeps");
         assert_eq!(variants[7].words(), "newton, Δt 1e-4 s, residual 1e-6");
-        let one = step_variants(true, &[], &[], &[7], &[]).expect("a choice");
+        let one = step_variants(true, Stepper::Moreau, &[], &[], &[7], &[]).expect("a choice");
         assert!(one.len() == 1 && one[0].budget == SolveBudget::Sweeps(7));
+        let words = |stepper| -> Vec<String> {
+            let chosen = step_variants(true, stepper, &[], &[], &[], &[]).expect("a choice");
+            chosen.iter().map(StepVariant::words).collect()
+        };
+        assert_eq!(words(Stepper::Range)[1], "range, nsgs, Δt 1e-3 s, 100 sweeps");
+        assert_eq!(words(Stepper::Dem), ["dem, Δt 1e-3 s"]);
     }
 
     #[test]
     fn what_is_no_number_or_comes_twice_is_refused_by_name() {
         let refused = |steps: &[f64], sweeps: &[u32], tolerances: &[f64]| {
-            let choice = step_variants(true, &[], steps, sweeps, tolerances);
+            let choice = step_variants(true, Stepper::Moreau, &[], steps, sweeps, tolerances);
             choice.expect_err("a refusal").to_string()
         };
         assert!(refused(&[1e-3, -1.0], &[], &[]).starts_with("time-steps is -1"));
@@ -135,5 +163,8 @@ mod tests {
         assert!(refused(&[], &[0], &[]).starts_with("sweeps is 0"));
         assert!(refused(&[], &[3, 3], &[]).starts_with("sweeps is 3 twice"));
         assert!(refused(&[], &[], &[f64::NAN]).starts_with("tolerances is NaN"));
+        let said = step_variants(true, Stepper::Dem, &[Method::Newton], &[], &[], &[]);
+        let said = said.expect_err("a refusal").to_string();
+        assert!(said.starts_with("methods is given, but must be left out under dem"), "{said}");
     }
 }

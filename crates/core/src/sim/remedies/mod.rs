@@ -163,7 +163,7 @@ pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
     }
     let time_step_secs = settings.parameters.time_step_secs;
     let mut travel = state.fastest_in(time_step_secs) * time_step_secs
-        + world.gravity.magnitude() * time_step_secs * time_step_secs;
+        + state.largest_acceleration() * time_step_secs * time_step_secs;
     if let Some(pull) = state.pull {
         let position = world.grains.positions[pull.grain as usize];
         travel += world.shortest(pull.target - position).length();
@@ -273,11 +273,11 @@ const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 /// ([`pieces`]) has none of these faults.
 pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
-    let by_gravity = 2.0 * world.gravity.magnitude() * time_step_secs * time_step_secs;
-    let way = 2.0 * state.fastest() * time_step_secs + by_gravity;
+    let by_forces = 2.0 * state.largest_acceleration() * time_step_secs * time_step_secs;
+    let way = 2.0 * state.fastest() * time_step_secs + by_forces;
     LookAhead {
         time_step_secs,
-        distance: by_gravity,
+        distance: by_forces,
         reach: way.min(FARTHEST_IN_DIAMETERS * world.mean_diameter),
         bonds: false,
     }

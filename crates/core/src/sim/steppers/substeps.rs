@@ -54,10 +54,9 @@ impl<M: Model> Substepping<M> {
         StepResult { report, measures, ..self.works }
     }
 
-    /// Begins a substep: gravity and a spring that pulls act on the bodies.
+    /// Begins a substep: gravity, body forces and a spring that pulls act on the bodies.
     pub(super) fn begin(&mut self, stage: &mut Stage<'_, M>) {
-        let State { world, pull, .. } = &*stage.state;
-        let push = pull.and_then(|pull| pull.push(world, M::AXES, self.substep_secs));
+        let pushes = stage.state.pushes(M::AXES, self.substep_secs);
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
         self.start.clone_from(bodies);
         for (index, body) in bodies.iter_mut().enumerate() {
@@ -65,7 +64,7 @@ impl<M: Model> Substepping<M> {
                 *body = M::accelerated(body, world, index, self.substep_secs);
             }
         }
-        if let Some(push) = push {
+        for push in pushes {
             push.apply::<M>(bodies);
         }
         self.free.clone_from(bodies);
@@ -84,7 +83,7 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Counts the work of gravity and of the spring in the substep that ends with `bodies`.
+    /// Counts the work of gravity, body forces and the spring in the substep that ends with `bodies`.
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);

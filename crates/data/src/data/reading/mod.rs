@@ -78,7 +78,9 @@ fn read_folder(folder: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     if text.exists() {
         return csv::read(&text, wanted?);
     }
-    let is_written_alone = [vtk::FOLDER, lammps::FOLDER].iter().any(|it| folder.join(it).exists());
+    let is_written_alone = [vtk::BODIES.name, vtk::FIELDS.name, lammps::FOLDER]
+        .iter()
+        .any(|it| folder.join(it).exists());
     let found =
         if is_written_alone { "has grains for other programs alone" } else { "has no grains" };
     Err(Error::file(folder, format!("{found}, but must be {FORM}")))

@@ -1,6 +1,7 @@
 //! For ParaView and all that reads VTK's files: `vtk/grains.pvd` and `vtk/contacts.pvd`, each a series of
 //! one `.vtp` a frame. Grains are points with a radius, contacts lines from centre to centre, or to the
-//! touched point of a boundary.
+//! touched point of a boundary. `fields/fields.pvd`, a format of its own, is a series of images (`.vti`): the cells of a
+//! grid, with smoothed fields ([`Fields`]).
 //!
 //! Arrays have the names of the tables' columns. Two columns that are one vector are one array, `velocity`,
 //! `normal`, `force` or `point`, with the columns' names for its components: VTK's vectors are in space. Words are
@@ -8,7 +9,7 @@
 //! words in the order of the numbers, `columns` what each column is and its unit, `about` the run. What is
 //! measured of the whole pile is there too, as `pile_NAME`, and what walls do, with a value a wall, as `wall_NAME`.
 
-mod poly_data;
+mod vtk_file;
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -16,19 +17,53 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
-use self::poly_data::{PolyData, VtkCells};
+use self::vtk_file::{VtkCells, VtkFile};
 use super::format::{Format, Frame, RunFacts};
 use super::recording_folder::{files_named, make_folder, remove};
 use super::table::{Column, Table, Values};
 use crate::column_spec::STEP;
 use crate::error::{Error, Result};
+use crate::granular::Fields;
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
 
-pub(super) const FOLDER: &str = "vtk";
-/// Of the files, the beginnings of their names.
-const KINDS: [&str; 2] = ["grains", "contacts"];
-const ENDING: &str = ".vtp";
+/// A folder of such files, which is a format.
+pub(super) struct VtkFolder {
+    pub name: &'static str,
+    kinds: &'static [VtkKind],
+}
+
+/// Files of one kind, one a frame.
+struct VtkKind {
+    /// Which their names begin with.
+    name: &'static str,
+    /// Which they end with.
+    ending: &'static str,
+    file: fn(&Frame, &RunFacts) -> Result<Vec<u8>>,
+}
+
+/// Grains and contacts.
+pub(super) const BODIES: VtkFolder = VtkFolder {
+    name: "vtk",
+    kinds: &[
+        VtkKind {
+            name: "grains",
+            ending: ".vtp",
+            file: |frame, facts| Ok(grains_file(frame, facts)),
+        },
+        VtkKind {
+            name: "contacts",
+            ending: ".vtp",
+            file: |frame, facts| Ok(contacts_file(frame, facts)),
+        },
+    ],
+};
+/// Smoothed fields.
+pub(super) const FIELDS: VtkFolder = VtkFolder {
+    name: "fields",
+    kinds: &[VtkKind { name: "fields", ending: ".vti", file: fields_file }],
+};
+
 const ENDING_OF_SERIES: &str = ".pvd";
 
 /// What the time is called, s: VTK's readers look for this name.
@@ -64,49 +99,62 @@ const CLOSING: &str = "</Collection>\n</VTKFile>\n";
 
 pub(super) struct Vtk {
     folder: PathBuf,
+    kinds: &'static [VtkKind],
     facts: RunFacts,
     /// Once there is a frame, or frames of before are gone on with; one of a kind.
-    series: Option<[PvdSeries; 2]>,
+    series: Vec<PvdSeries>,
 }
 
 impl Vtk {
-    pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
-        let folder = folder.join(FOLDER);
+    pub(super) fn start(folder: &Path, files: &VtkFolder, facts: &RunFacts) -> Result<Self> {
+        let folder = folder.join(files.name);
         make_folder(&folder)?;
-        Ok(Self { folder, facts: facts.clone(), series: None })
+        Ok(Self { folder, kinds: files.kinds, facts: facts.clone(), series: Vec::new() })
     }
 
     /// Begins the series with the files of the first frames, each with its time, s.
-    fn begin(&mut self, times: &[f64]) -> Result<&mut [PvdSeries; 2]> {
-        let [grains, contacts] = KINDS.map(|kind| {
-            let files =
-                times.iter().zip(0..).map(|(&time, number)| (time, file_name(kind, number)));
+    fn begin(&mut self, times: &[f64]) -> Result<()> {
+        let series = self.kinds.iter().map(|kind| {
+            let files = times.iter().zip(0..).map(|(&time, number)| (time, kind.file_name(number)));
             PvdSeries::of(
-                self.folder.join(format!("{kind}{ENDING_OF_SERIES}")),
+                self.folder.join(format!("{}{ENDING_OF_SERIES}", kind.name)),
                 &files.collect::<Vec<_>>(),
             )
         });
-        Ok(self.series.insert([grains?, contacts?]))
+        self.series = series.collect::<Result<_>>()?;
+        Ok(())
     }
 }
 
-/// True if a file in the folder has a name of these files.
-pub(super) fn is_name_of_file(name: &str) -> bool {
-    KINDS
-        .iter()
-        .filter_map(|kind| name.strip_prefix(kind))
-        .any(|rest| rest == ENDING_OF_SERIES || number_of(rest).is_some())
+impl VtkFolder {
+    /// True if a file in the folder has a name of these files.
+    pub(super) fn has_named(&self, name: &str) -> bool {
+        let is_series = |kind: &VtkKind| name.strip_prefix(kind.name) == Some(ENDING_OF_SERIES);
+        self.kinds.iter().any(|kind| is_series(kind) || kind.number_of(name).is_some())
+    }
+}
+
+impl VtkKind {
+    fn file_name(&self, number: u64) -> String {
+        format!("{}_{number:06}{}", self.name, self.ending)
+    }
+
+    /// The number of a file of that name, if it is of these.
+    fn number_of(&self, name: &str) -> Option<u64> {
+        let digits = name.strip_prefix(self.name)?.strip_prefix('_')?.strip_suffix(self.ending)?;
+        let are_digits = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
+        are_digits.then(|| digits.parse().ok())?
+    }
 }
 
 impl Format for Vtk {
     fn add(&mut self, frame: &Frame) -> Result<()> {
-        if self.series.is_none() {
+        if self.series.is_empty() {
             self.begin(&[])?;
         }
-        let texts = [grains_file(frame, &self.facts), contacts_file(frame, &self.facts)];
-        let series = self.series.iter_mut().flatten();
-        for ((kind, series), bytes) in KINDS.iter().zip(series).zip(texts) {
-            let name = file_name(kind, frame.number);
+        for (kind, series) in self.kinds.iter().zip(&mut self.series) {
+            let bytes = (kind.file)(frame, &self.facts)?;
+            let name = kind.file_name(frame.number);
             let mut file = PendingFile::start(&self.folder.join(&name))?;
             file.write(&bytes)?;
             // A run does not wait for the disk.
@@ -117,15 +165,16 @@ impl Format for Vtk {
     }
 
     fn roll_back(&mut self, _step: u64, last_frame: Option<u64>) -> Result<()> {
-        self.series = None;
+        self.series.clear();
         let mut times = Vec::new();
         loop {
             let number = times.len() as u64;
-            let [path, of_contacts] = KINDS.map(|kind| self.folder.join(file_name(kind, number)));
-            if !path.exists() || !of_contacts.exists() {
+            let paths = self.kinds.iter().map(|kind| self.folder.join(kind.file_name(number)));
+            let paths: Vec<PathBuf> = paths.filter(|path| path.exists()).collect();
+            if paths.len() < self.kinds.len() {
                 break;
             }
-            let (step_of_file, time_secs) = moment_of(&path)?;
+            let (step_of_file, time_secs) = moment_of(&paths[0])?;
             if Some(step_of_file) > last_frame {
                 break;
             }
@@ -136,26 +185,14 @@ impl Format for Vtk {
             self.begin(&times)?;
         }
         let is_later = |name: &str| {
-            let ours = KINDS.iter().find_map(|kind| name.strip_prefix(kind));
-            let number = ours.and_then(number_of);
-            number.map_or(ours == Some(ENDING_OF_SERIES) && times.is_empty(), |number| {
+            let number = self.kinds.iter().find_map(|kind| kind.number_of(name));
+            number.map_or(name.ends_with(ENDING_OF_SERIES) && times.is_empty(), |number| {
                 number >= times.len() as u64
             })
         };
         let later = files_named(&self.folder, is_later)?;
         later.iter().try_for_each(|path| remove(path))
     }
-}
-
-fn file_name(kind: &str, number: u64) -> String {
-    format!("{kind}_{number:06}{ENDING}")
-}
-
-/// The number of a file of ours, by what its name has behind its kind.
-fn number_of(rest: &str) -> Option<u64> {
-    let digits = rest.strip_prefix('_')?.strip_suffix(ENDING)?;
-    let are_digits = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
-    are_digits.then(|| digits.parse().ok())?
 }
 
 /// Grains as points, with the columns of their table.
@@ -165,7 +202,7 @@ fn grains_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let grains = frame.moment.grains.iter().map(|grain| grain.position);
     let centres: Vec<DVec2> = grains.chain(fixed).collect();
     let points = centres.iter().map(DVec2::to_array);
-    let file = file(PolyData::new(VtkCells::Points, points), frame, &frame.grains, "point", facts);
+    let file = file(VtkFile::new(VtkCells::Points, points), frame, &frame.grains, "point", facts);
     let file = with_arrays(file, PILE, &frame.measures);
     with_arrays(file, WALL, &frame.walls).finish("radius")
 }
@@ -175,8 +212,59 @@ fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let lines = frame.moment.contacts.iter().map(|contact| line(&frame.moment, contact));
     let ends: Vec<DVec2> = lines.flatten().collect();
     let points = ends.iter().map(DVec2::to_array);
-    file(PolyData::new(VtkCells::Lines, points), frame, &frame.contacts, "", facts)
+    file(VtkFile::new(VtkCells::Lines, points), frame, &frame.contacts, "", facts)
         .finish("normal_force")
+}
+
+/// What the fields are, for the file's `columns`.
+const OF_FIELDS: [&str; 10] = [
+    "density [kg/m^2]: smoothed with smoothing_width, m, the standard deviation along each axis; means over cells",
+    "momentum [kg/(m s)]: likewise",
+    "velocity [m/s]: momentum over density; NaN where there is none",
+    "kinetic_stress_xx [N/m]: of velocities relative to that of the cell, compression positive",
+    "kinetic_stress_xy [N/m]: likewise, and the same as yx",
+    "kinetic_stress_yy [N/m]: likewise",
+    "contact_stress_xx [N/m]: of forces along the ways between centres, compression positive",
+    "contact_stress_xy [N/m]: x of the forces, y of the ways",
+    "contact_stress_yx [N/m]: y of the forces, x of the ways",
+    "contact_stress_yy [N/m]: likewise",
+];
+
+/// Fields as an image, smoothed by a mean diameter, or by twice as much as often as it takes: a grain that is far away would
+/// make the grid too large.
+fn fields_file(frame: &Frame, facts: &RunFacts) -> Result<Vec<u8>> {
+    let mut width = frame.moment.surroundings.mean_diameter;
+    let mut fields = Fields::of(&frame.moment, width);
+    while fields.is_err() && width.is_finite() {
+        width *= 2.0;
+        fields = Fields::of(&frame.moment, width);
+    }
+    let fields = fields?;
+    let along = |axis: usize| [fields.first[axis], fields.first[axis] + fields.counts[axis] as i64];
+    let cells = VtkCells::Grid {
+        origin: fields.origin.to_array(),
+        sides: fields.cell.to_array(),
+        extent: [along(0), along(1)],
+    };
+    let mut file = VtkFile::new(cells, std::iter::empty());
+    add_moment(&mut file, frame);
+    file.add_number("smoothing_width", fields.width);
+    file.add_words("columns", OF_FIELDS.iter());
+    add_facts(&mut file, facts);
+    file.add_column("density", fields.density.iter().copied());
+    for (name, vectors) in [("momentum", &fields.momentum), ("velocity", &fields.velocity)] {
+        file.add_vectors(name, ["x", "y"], vectors.iter().map(DVec2::to_array));
+    }
+    let kinetic = &fields.kinetic_stress;
+    file.add_column("kinetic_stress_xx", kinetic.iter().map(|stress| stress.x_axis.x));
+    file.add_column("kinetic_stress_xy", kinetic.iter().map(|stress| stress.y_axis.x));
+    file.add_column("kinetic_stress_yy", kinetic.iter().map(|stress| stress.y_axis.y));
+    let of_contacts = &fields.contact_stress;
+    file.add_column("contact_stress_xx", of_contacts.iter().map(|stress| stress.x_axis.x));
+    file.add_column("contact_stress_xy", of_contacts.iter().map(|stress| stress.y_axis.x));
+    file.add_column("contact_stress_yx", of_contacts.iter().map(|stress| stress.x_axis.y));
+    file.add_column("contact_stress_yy", of_contacts.iter().map(|stress| stress.y_axis.y));
+    Ok(file.finish("density"))
 }
 
 /// Step and time, s, of the frame that a file has.
@@ -215,20 +303,17 @@ fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
 
 /// Adds all that the table has, except for the vector that says where its points are.
 fn file(
-    mut file: PolyData,
+    mut file: VtkFile,
     frame: &Frame,
     table: &Table,
     placed_by: &str,
     facts: &RunFacts,
-) -> PolyData {
-    let observables = &frame.moment.observables;
-    file.add_number(STEP, observables.step as i64);
-    file.add_number(TIME, observables.time_secs);
+) -> VtkFile {
+    add_moment(&mut file, frame);
     let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     let described = columns.clone().map(|column| column.described_with_codes(column.name, 0));
     file.add_words("columns", described.collect::<Vec<_>>().iter());
-    let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
-    file.add_words("about", facts);
+    add_facts(&mut file, facts);
     for column in columns {
         let is_part = |(_, parts): &&(&str, [&str; 2])| parts.contains(&column.name);
         match VECTORS.iter().find(is_part) {
@@ -246,8 +331,19 @@ fn file(
     file
 }
 
+fn add_moment(file: &mut VtkFile, frame: &Frame) {
+    let observables = &frame.moment.observables;
+    file.add_number(STEP, observables.step as i64);
+    file.add_number(TIME, observables.time_secs);
+}
+
+fn add_facts(file: &mut VtkFile, facts: &RunFacts) {
+    let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
+    file.add_words("about", facts);
+}
+
 /// Adds the columns of a table whose rows are no points, with `prefix` in front of their names.
-fn with_arrays(mut file: PolyData, prefix: &str, table: &Table) -> PolyData {
+fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
     let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     for Column { name, values, .. } in columns {
         let name = format!("{prefix}{name}");
@@ -277,7 +373,7 @@ fn numbers<'a>(table: &'a Table, name: &str) -> &'a [f64] {
     }
 }
 
-fn add(file: &mut PolyData, Column { name, values, .. }: &Column) {
+fn add(file: &mut VtkFile, Column { name, values, .. }: &Column) {
     match values {
         Values::Numbers(numbers) => file.add_column(name, numbers.iter().copied()),
         Values::SomeNumbers(numbers) => {

@@ -67,16 +67,16 @@ const MOST_SUBSTEPS: f64 = 16.0;
 /// How far a step that has begun has to look: the speed of the fastest tells what any grain may come to.
 fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
-    let travel = travel(world, state.fastest(), time_step_secs);
+    let travel = travel(state, time_step_secs);
     let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
     let distance = travel.min(near);
     let reach = (distance + 2.0 * travel).min(far);
     LookAhead { time_step_secs, distance, reach, bonds: true }
 }
 
-/// How far a grain may go in a step where the fastest has that speed (m/s), m.
-fn travel(world: &World, fastest: f64, time_step_secs: f64) -> f64 {
-    (fastest + 2.0 * world.gravity.magnitude() * time_step_secs) * time_step_secs
+/// How far a grain may go in a step that has begun, m.
+fn travel(state: &State, time_step_secs: f64) -> f64 {
+    (state.fastest() + 2.0 * state.largest_acceleration() * time_step_secs) * time_step_secs
 }
 
 /// How a step is cut.
@@ -97,7 +97,7 @@ impl StepCut {
         let parameters = &settings.parameters;
         let whole = parameters.time_step_secs;
         let distance = parameters.debonding_distance * world.mean_diameter;
-        let travel = travel(world, state.fastest(), whole);
+        let travel = travel(state, whole);
         let of_travel = (travel / (MOST_TRAVEL * world.mean_diameter)).ceil();
         let bond_time = bond_time_secs(parameters.bond, world.gravity.magnitude(), distance);
         let of_bonds = (whole / (SUBSTEP_IN_BOND_TIMES * bond_time)).ceil();

@@ -1,5 +1,5 @@
-//! One `.vtp` file: points, cells on them, and named arrays, in VTK's XML format for polygonal data with
-//! raw appended arrays (K. Martin, W. Schroeder, B. Lorensen, *VTK File Formats*).
+//! One `.vtp` or `.vti` file: points with cells on them, or the cells of a grid, and named arrays, in VTK's XML formats for
+//! polygonal data and for images with raw appended arrays (K. Martin, W. Schroeder, B. Lorensen, *VTK File Formats*).
 //!
 //! The XML says of each array where it begins behind the `_` of `AppendedData`; there its length in bytes
 //! stands as a UInt64, then its values, all in little-endian order. Nothing is rounded.
@@ -25,27 +25,34 @@ macro_rules! scalars {
 
 scalars! { f64, "Float64"; i64, "Int64"; i32, "Int32"; i8, "Int8"; }
 
-/// Which cells lie on the points, all of one kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Which cells there are, all of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum VtkCells {
     Points,
     /// A line from each point of even number to the next.
     Lines,
+    /// Of an upright grid without points of its own: the corner of the cell with the index 0, the sides, m, and the first
+    /// and the last corner along both axes.
+    Grid {
+        origin: [f64; 2],
+        sides: [f64; 2],
+        extent: [[i64; 2]; 2],
+    },
 }
 
-pub(super) struct PolyData {
+pub(super) struct VtkFile {
     cells: VtkCells,
     points: usize,
     /// The XML of the arrays that go with the file as a whole, …
     of_file: String,
-    /// … with each point or line, …
+    /// … with each point, line or cell, …
     of_rows: String,
     /// … and of the points themselves.
     of_points: String,
     appended: Vec<u8>,
 }
 
-impl PolyData {
+impl VtkFile {
     /// A file with those points, m, in the plane z = 0.
     pub(super) fn new(cells: VtkCells, points: impl ExactSizeIterator<Item = [f64; 2]>) -> Self {
         let mut file = Self {
@@ -107,13 +114,13 @@ impl PolyData {
         );
     }
 
-    /// Adds numbers, one a point or line.
+    /// Adds numbers, one a point, line or cell.
     pub(super) fn add_column<N: Scalar>(&mut self, name: &str, column: impl Iterator<Item = N>) {
         let said = self.append(name, [], column.map(|number| [number]));
         self.of_rows += &said;
     }
 
-    /// Adds vectors, one a point or line; `parts` are the names of their first two components.
+    /// Adds vectors likewise; `parts` are the names of their first two components.
     pub(super) fn add_vectors(
         &mut self,
         name: &str,
@@ -129,6 +136,9 @@ impl PolyData {
         let (cells, each) = match self.cells {
             VtkCells::Points => ("Verts", 1),
             VtkCells::Lines => ("Lines", 2),
+            VtkCells::Grid { origin, sides, extent } => {
+                return self.finish_image(origin, sides, extent, scalars);
+            }
         };
         let count = self.points / each;
         let connectivity = self.append("connectivity", [], (0..self.points as i64).map(|n| [n]));
@@ -138,15 +148,12 @@ impl PolyData {
         let of_rows = format!(" Scalars=\"{scalars}\">\n{of_rows}      ");
         let [of_each_point, of_each_cell] = match self.cells {
             VtkCells::Points => [of_rows.as_str(), ">"],
-            VtkCells::Lines => [">", of_rows.as_str()],
+            _ => [">", of_rows.as_str()],
         };
         let counts = ["Verts", "Lines", "Strips", "Polys"]
             .map(|kind| format!(" NumberOf{kind}=\"{}\"", if kind == cells { count } else { 0 }));
-        let head = format!(
-            "<?xml version=\"1.0\"?>\n\
-             <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
-             header_type=\"UInt64\">\n  \
-             <PolyData>\n    \
+        let body = format!(
+            "  <PolyData>\n    \
              <FieldData>\n{of_file}    </FieldData>\n    \
              <Piece NumberOfPoints=\"{points}\"{}>\n      \
              <PointData{of_each_point}</PointData>\n      \
@@ -154,12 +161,31 @@ impl PolyData {
              <Points>\n{of_points}      </Points>\n      \
              <{cells}>\n{connectivity}{offsets}      </{cells}>\n    \
              </Piece>\n  \
-             </PolyData>\n  \
-             <AppendedData encoding=\"raw\">\n   _",
+             </PolyData>\n",
             counts.concat()
         );
-        let tail = b"\n  </AppendedData>\n</VTKFile>\n";
-        [head.as_bytes(), appended, tail].concat()
+        whole_file("PolyData", &body, appended)
+    }
+
+    fn finish_image(
+        self,
+        [left, below]: [f64; 2],
+        [width, height]: [f64; 2],
+        [x, y]: [[i64; 2]; 2],
+        scalars: &str,
+    ) -> Vec<u8> {
+        let Self { of_file, of_rows, appended, .. } = &self;
+        let extent = format!("{} {} {} {} 0 0", x[0], x[1], y[0], y[1]);
+        let body = format!(
+            "  <ImageData WholeExtent=\"{extent}\" Origin=\"{left:?} {below:?} 0\" \
+             Spacing=\"{width:?} {height:?} 1\">\n    \
+             <FieldData>\n{of_file}    </FieldData>\n    \
+             <Piece Extent=\"{extent}\">\n      \
+             <CellData Scalars=\"{scalars}\">\n{of_rows}      </CellData>\n    \
+             </Piece>\n  \
+             </ImageData>\n"
+        );
+        whole_file("ImageData", &body, appended)
     }
 
     /// Appends an array; what the XML says of it. `parts` names the components where there are several.
@@ -193,6 +219,17 @@ impl PolyData {
         self.appended[offset..behind_length].copy_from_slice(&length.to_le_bytes());
         offset
     }
+}
+
+fn whole_file(kind: &str, body: &str, appended: &[u8]) -> Vec<u8> {
+    let head = format!(
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\">\n\
+         {body}  \
+         <AppendedData encoding=\"raw\">\n   _"
+    );
+    [head.as_bytes(), appended, b"\n  </AppendedData>\n</VTKFile>\n"].concat()
 }
 
 /// A vector of the plane as VTK has it.

@@ -1,0 +1,254 @@
+//! Density, momentum, velocity and stress as fields, by smoothing (I. Goldhirsch, *Stress, stress asymmetry and couple
+//! stress: from discrete particles to continuous fields*, Granular Matter 12:239, 2010):
+//!
+//! > ρ = Σ m φ(r − r_i),  p = Σ m v φ(r − r_i),  V = p/ρ,
+//! > σ_k = Σ m v′ ⊗ v′ φ(r − r_i) with v′ = v − V(r),  σ_c = Σ f ⊗ ℓ ∫₀¹ φ(r − r_i + s ℓ) ds,
+//!
+//! compression positive as everywhere here: f is the force on grain i, and ℓ leads to its centre from that of grain j, or from
+//! the touched point of a body that no grain moves.
+//!
+//! **φ** is the product of a cubic B-spline in x and one in y. It has twice continuous derivatives, ends at 2√3 widths, and its
+//! standard deviation along each axis is the width. **A value is the mean over a cell**, to which each grain contributes the
+//! integral of φ. So the sums over all cells are exact: of mass and momentum, and of σ_c the sum Σ f ⊗ ℓ. The integral over s
+//! is a Gauss quadrature, whose points have weights that add up to 1.
+//!
+//! **Borders that wrap** take what is smeared across them to the other side. Where they shear, it has the velocity there of a
+//! grain that crosses.
+
+use glam::{DMat2, DVec2};
+
+use super::network::Network;
+use crate::error::{Error, Result};
+use crate::sim::Moment;
+use crate::world::Periodic;
+
+/// Cells in a width: what is smooth over a width is resolved.
+const CELLS_IN_WIDTH: f64 = 2.0;
+/// More cells take more memory than a field is worth.
+const MOST_CELLS: f64 = 4e6;
+/// Gauss' quadrature on 0 … 1, exact up to the fifth degree: places, and weights.
+const QUADRATURE: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_3, 5.0 / 18.0),
+    (0.5, 4.0 / 9.0),
+    (0.887_298_334_620_741_7, 5.0 / 18.0),
+];
+
+/// Smoothed fields of a moment: means over the cells of a grid. Row after row from below, each from the left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fields {
+    /// The standard deviation of the smoothing along each axis, m.
+    pub width: f64,
+    /// Corner of the cell with the index 0, m: the origin, or the borders of what wraps.
+    pub origin: DVec2,
+    /// Sides of a cell, m.
+    pub cell: DVec2,
+    /// Indices of the first cell along both axes.
+    pub first: [i64; 2],
+    /// Cells along both axes.
+    pub counts: [usize; 2],
+    /// ρ, kg/m².
+    pub density: Vec<f64>,
+    /// p, kg/(m·s).
+    pub momentum: Vec<DVec2>,
+    /// V, m/s; NaN where there is no mass.
+    pub velocity: Vec<DVec2>,
+    /// σ_k, N/m.
+    pub kinetic_stress: Vec<DMat2>,
+    /// σ_c, N/m: the first index is that of the force.
+    pub contact_stress: Vec<DMat2>,
+}
+
+impl Fields {
+    /// Fields of all grains that are not lost, smoothed by a width, m.
+    ///
+    /// # Errors
+    /// Where the width is none, or so small that there would be too many cells.
+    pub fn of(moment: &Moment, width: f64) -> Result<Self> {
+        if !(width > 0.0 && width.is_finite()) {
+            return Err(Error::value("width", width, "a finite length > 0 in m"));
+        }
+        let network = Network::of(moment);
+        let periodic = moment.surroundings.periodic.unwrap_or_default();
+        let centres = network.grains().map(|(_, grain)| grain.position);
+        let touched = network.links.iter();
+        let touched = touched.map(|link| network.grains[link.grain].position - link.branch());
+        let reach = |at: DVec2| [at, at];
+        let wider =
+            |[low, high]: [DVec2; 2], [other, one]: [DVec2; 2]| [low.min(other), high.max(one)];
+        // Where all grains are lost, there is nothing about the origin.
+        let [low, high] =
+            centres.chain(touched).map(reach).reduce(wider).unwrap_or([DVec2::ZERO; 2]);
+        let axes = [
+            Axis::of(periodic.x, [low.x, high.x], width),
+            Axis::of(periodic.y, [low.y, high.y], width),
+        ];
+        let count: f64 = axes.iter().map(|axis| axis.cells).product();
+        if count > MOST_CELLS {
+            let allowed = format!("so large that {count:.0} cells become {MOST_CELLS} or fewer");
+            return Err(Error::value("width", width, allowed));
+        }
+        let counts = [0, 1].map(|axis| axes[axis].cells as usize);
+        let cells = counts[0] * counts[1];
+        let mut fields = Self {
+            width,
+            origin: DVec2::new(axes[0].origin, axes[1].origin),
+            cell: DVec2::new(axes[0].side, axes[1].side),
+            first: [axes[0].first, axes[1].first],
+            counts,
+            density: vec![0.0; cells],
+            momentum: vec![DVec2::ZERO; cells],
+            velocity: Vec::new(),
+            kinetic_stress: vec![DMat2::ZERO; cells],
+            contact_stress: vec![DMat2::ZERO; cells],
+        };
+        fields.fill(&network, &Smoothing { axes, periodic, width });
+        Ok(fields)
+    }
+
+    fn fill(&mut self, network: &Network<'_>, smoothing: &Smoothing) {
+        let per_area = 1.0 / (self.cell.x * self.cell.y);
+        let Self { density, momentum, kinetic_stress, contact_stress, .. } = self;
+        let speed = smoothing.periodic.border_speed();
+        let seen = |velocity: DVec2, above: f64| velocity - above * speed * DVec2::X;
+        for (_, grain) in network.grains() {
+            smoothing.share(grain.position, |cell, share, above| {
+                let mass = per_area * share * grain.mass;
+                density[cell] += mass;
+                momentum[cell] += mass * seen(grain.velocity, above);
+            });
+        }
+        let velocity: Vec<DVec2> = momentum
+            .iter()
+            .zip(&*density)
+            .map(|(&momentum, &density)| momentum / density)
+            .collect();
+        for (_, grain) in network.grains() {
+            smoothing.share(grain.position, |cell, share, above| {
+                // Where the share is rounded away there is no velocity.
+                if share > 0.0 {
+                    let own = seen(grain.velocity, above) - velocity[cell];
+                    kinetic_stress[cell] += outer(per_area * share * grain.mass * own, own);
+                }
+            });
+        }
+        for link in &network.links {
+            let (branch, centre) = (link.branch(), network.grains[link.grain].position);
+            let pieces = (branch.length() / smoothing.width).ceil().max(1.0);
+            let stress = outer(per_area / pieces * link.force, branch);
+            for piece in 0..pieces as usize {
+                for (place, weight) in QUADRATURE {
+                    let at = centre - (piece as f64 + place) / pieces * branch;
+                    smoothing.share(at, |cell, share, _| {
+                        contact_stress[cell] += weight * share * stress;
+                    });
+                }
+            }
+        }
+        self.velocity = velocity;
+    }
+
+    /// Centres of the cells along x and along y, m.
+    pub fn centres(&self) -> [Vec<f64>; 2] {
+        [0, 1].map(|axis| {
+            let of = |number: usize| {
+                self.origin[axis]
+                    + ((self.first[axis] + number as i64) as f64 + 0.5) * self.cell[axis]
+            };
+            (0..self.counts[axis]).map(of).collect()
+        })
+    }
+}
+
+/// a ⊗ b.
+fn outer(a: DVec2, b: DVec2) -> DMat2 {
+    DMat2::from_cols(b.x * a, b.y * a)
+}
+
+/// The cells along an axis.
+struct Axis {
+    wraps: bool,
+    origin: f64,
+    side: f64,
+    first: i64,
+    cells: f64,
+}
+
+impl Axis {
+    /// All cells that what lies between two places is smeared over, or all between borders that wrap.
+    fn of(borders: Option<[f64; 2]>, [from, to]: [f64; 2], width: f64) -> Self {
+        let side = width / CELLS_IN_WIDTH;
+        if let Some([low, high]) = borders {
+            let cells = ((high - low) / side).ceil();
+            return Self { wraps: true, origin: low, side: (high - low) / cells, first: 0, cells };
+        }
+        let reach = 2.0 * knots(width);
+        let first = ((from - reach) / side).floor();
+        let cells = ((to + reach) / side).floor() + 1.0 - first;
+        Self { wraps: false, origin: 0.0, side, first: first as i64, cells }
+    }
+
+    /// Shares of the cells in what is smeared around a place: cell, share, and by how many periods the cell lies beyond the
+    /// upper border. They add up to 1.
+    fn shares(&self, place: f64, width: f64) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+        let knots = knots(width);
+        let at = move |cell: f64| self.origin + cell * self.side;
+        let number = |place: f64| ((place - self.origin) / self.side).floor();
+        let (from, to) = (number(place - 2.0 * knots), number(place + 2.0 * knots));
+        let mut below = 0.0;
+        (from as i64..=to as i64).map(move |cell| {
+            let whole = if cell as f64 == to {
+                1.0
+            } else {
+                spline_below((at(cell as f64 + 1.0) - place) / knots)
+            };
+            let share = whole - std::mem::replace(&mut below, whole);
+            if self.wraps {
+                let cells = self.cells as i64;
+                (cell.rem_euclid(cells) as usize, share, cell.div_euclid(cells) as f64)
+            } else {
+                ((cell - self.first) as usize, share, 0.0)
+            }
+        })
+    }
+}
+
+/// Distance of the knots of a cubic B-spline with that standard deviation.
+fn knots(width: f64) -> f64 {
+    3f64.sqrt() * width
+}
+
+/// The integral of the cubic B-spline up to a place, in knots from its middle.
+fn spline_below(place: f64) -> f64 {
+    let t = place.abs();
+    let above_middle = if t < 1.0 {
+        t * (2.0 / 3.0 + t * t * (t / 8.0 - 1.0 / 3.0))
+    } else {
+        0.5 - (2.0 - t.min(2.0)).powi(4) / 24.0
+    };
+    0.5 + above_middle.copysign(place)
+}
+
+struct Smoothing {
+    axes: [Axis; 2],
+    periodic: Periodic,
+    width: f64,
+}
+
+impl Smoothing {
+    /// Gives `to` the cells that a place is smeared over: number, share, and how many cells above this one it reached.
+    fn share(&self, place: DVec2, mut to: impl FnMut(usize, f64, f64)) {
+        let [along_x, along_y] = &self.axes;
+        let in_row = |above: f64| {
+            along_x.shares(place.x - above * self.periodic.shift, self.width).collect::<Vec<_>>()
+        };
+        let mut row = (0.0, in_row(0.0));
+        for (y, of_row, above) in along_y.shares(place.y, self.width) {
+            if above != row.0 {
+                row = (above, in_row(above));
+            }
+            for &(x, share, _) in &row.1 {
+                to(y * along_x.cells as usize + x, of_row * share, above);
+            }
+        }
+    }
+}
