@@ -65,6 +65,8 @@ impl Robot {
         let harness = renderer(window).build_ui_state(ui, state);
         let mut robot = Self { harness };
         robot.until("a scene", |state| !state.frame.worlds.is_empty());
+        // Sliders that come with a scene move what is above them.
+        robot.frames(2);
         robot
     }
 

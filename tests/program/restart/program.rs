@@ -202,7 +202,7 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
             if kills == 0 {
                 wait_for("a checkpoint", || stopped.path().join("checkpoint.slump").exists());
             } else {
-                std::thread::sleep(lasted.mul_f64(0.1 + 0.1 * f64::from(kills)));
+                std::thread::sleep(lasted.mul_f64(0.05 * f64::from(kills)));
             }
             let is_over = child.try_wait().expect("a child").is_some();
             child.kill().expect("a child");
