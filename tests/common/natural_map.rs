@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 use slump::sim::Simulation;
-use slump::world::{FrictionCone, Grains, Parameters};
+use slump::world::{FrictionCone, Grains, Motion, MotionCourse, Parameters};
 
 /// One contact as the design describes it, from world data alone.
 pub struct Judged {
@@ -17,7 +17,29 @@ pub struct Judged {
 }
 
 /// Velocities and spins of the grains, for [`judge`].
-type Motion = (Vec<DVec2>, Vec<f64>);
+type Velocities = (Vec<DVec2>, Vec<f64>);
+
+const NONE: (DVec2, f64) = (DVec2::ZERO, 0.0);
+
+/// How what is fixed goes and how fast its surface goes round it, m/s; boundaries are half-spaces, and courses straight.
+fn wall_velocity(simulation: &Simulation, other: u32) -> (DVec2, f64) {
+    let world = simulation.world();
+    let body = other as usize - world.grains.len();
+    let (fixed, discs) = (world.fixed_discs.len(), body < world.fixed_discs.len());
+    let moves = |motion: &&Motion| match discs {
+        true => motion.fixed_discs.contains(&body),
+        false => motion.boundaries.contains(&(body - fixed)),
+    };
+    let Some(motion) = world.motions.iter().find(moves) else { return NONE };
+    let velocity = match &motion.course {
+        Some(MotionCourse::Straight { direction, speed, travel: None }) => {
+            *speed * direction.normalize()
+        }
+        Some(course) => panic!("a course that is not judged: {course:?}"),
+        None => DVec2::ZERO,
+    };
+    (velocity, motion.surface_speed)
+}
 
 pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     let world = simulation.world();
@@ -35,15 +57,17 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     list.map(|contact| {
         let (i, j) = (contact.grain as usize, contact.other as usize);
         let j = (j < grains.len()).then_some(j);
+        let (wall, surface) =
+            if j.is_none() { wall_velocity(simulation, contact.other) } else { NONE };
         let mobility = |f: &dyn Fn(usize) -> f64| f(i) + j.map_or(0.0, f);
         let normal_mobility = mobility(&|k| 1.0 / grains.masses[k]);
         let spin_mobility = mobility(&|k| grains.radii[k].powi(2) / grains.inertia(k));
-        let relative = |(velocities, spins): &Motion| {
-            let velocity = velocities[i] - j.map_or(DVec2::ZERO, |j| velocities[j]);
+        let relative = |(velocities, spins): &Velocities| {
+            let velocity = velocities[i] - j.map_or(wall, |j| velocities[j]);
             let rim = grains.radii[i] * spins[i] + j.map_or(0.0, |j| grains.radii[j] * spins[j]);
             let tangent = DVec2::new(-contact.normal.y, contact.normal.x);
             let rim = if turning { rim } else { 0.0 };
-            [contact.normal.dot(velocity), tangent.dot(velocity) - rim]
+            [contact.normal.dot(velocity), tangent.dot(velocity) - rim - surface]
         };
         let normal_mass = 1.0 / normal_mobility;
         let spin_mobility = if turning { spin_mobility } else { 0.0 };

@@ -15,6 +15,22 @@ fn falling_disc() -> Scene {
     Scene { boundaries: vec![level()], ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), vec![disc]) }
 }
 
+/// A disc on a belt, and one that a wall pushes along the floor.
+fn moved_discs() -> [Scene; 2] {
+    let disc = moving(0.005 * DVec2::Y, 5e-3, DVec2::ZERO);
+    let still =
+        Scene { boundaries: vec![level()], ..under_g(parameters(5.0, 1e-3, 0.1, 0.5), vec![disc]) };
+    let belt = Motion { boundaries: vec![0], surface_speed: 0.2, ..Motion::default() };
+    let wall = Boundary::HalfSpace { point: -0.005 * DVec2::X, normal: DVec2::X };
+    let course = MotionCourse::Straight { direction: DVec2::X, speed: 0.1, travel: None };
+    let push = Motion { boundaries: vec![1], course: Some(course), ..Motion::default() };
+    let pushed = Scene { boundaries: vec![level(), wall], motions: vec![push], ..still.clone() };
+    [
+        Scene { name: "belt".into(), motions: vec![belt], ..still },
+        Scene { name: "pushed".into(), ..pushed },
+    ]
+}
+
 /// The built-in scenes whose steps world data can judge; those made to break methods alone, or all.
 fn scenes(all: bool) -> Vec<Scene> {
     let small = [SceneGroup::Paper, SceneGroup::Stability];
@@ -22,13 +38,18 @@ fn scenes(all: bool) -> Vec<Scene> {
     let infos = SCENES.iter().filter(|info| all || is_small(info));
     let scenes = infos.map(|info| (info.make)().expect(info.name));
     let is_still = |boundary: &Boundary| !matches!(boundary, Boundary::Piston { .. });
+    let goes_straight = |motion: &Motion| {
+        let course = motion.course.as_ref();
+        let is_straight = |course| matches!(course, &MotionCourse::Straight { travel: None, .. });
+        motion.drive.is_none() && course.is_none_or(is_straight)
+    };
     let is_judged = |scene: &Scene| {
         scene.boundaries.iter().all(is_still)
-            && scene.motions.is_empty()
+            && scene.motions.iter().all(goes_straight)
             && scene.periodic.is_none()
             && scene.gravity_turn.is_none()
     };
-    [falling_disc()].into_iter().chain(scenes).filter(is_judged).collect()
+    [falling_disc()].into_iter().chain(moved_discs()).chain(scenes).filter(is_judged).collect()
 }
 
 /// Every method by every stop, and those that take them under every model of friction.

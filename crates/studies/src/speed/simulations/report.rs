@@ -3,6 +3,9 @@
 use super::*;
 use crate::report::ReportTable;
 
+/// Piles from which on intervals tell something.
+const TELLING: usize = 8;
+
 /// Draws what each family reaches at best for its cost: against the same Δt, and against the finest one.
 pub(super) fn sheet(
     bench: &Bench,
@@ -33,9 +36,10 @@ pub(super) fn sheet(
         .collect();
     let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
     let (piles, grains) = (plan.piles.len(), NewPile::default().grains);
+    let intervals = if piles >= TELLING { ", with 95 % intervals" } else { "" };
     let caption = bench.caption(&[
         &format!(
-            "What each family comes to at best for its cost, with 95 % intervals over {piles} piles of {grains} grains, Δt of \
+            "What each family comes to at best for its cost{intervals}; means over {piles} piles of {grains} grains, Δt of \
              {steps} and all budgets. A budget that is too slow or blows up has failed. Dashes: two references differ by so much."
         ),
         &variants::members(&plan.variants),
@@ -76,7 +80,9 @@ fn with_errors(
             .map(|index| {
                 let Mean { mean, low, high, .. } = good[index].errors[panel];
                 let inside = |error: f64| error.clamp(LEAST_ERROR, 1.0);
-                let interval = Some((inside(low), inside(high)));
+                // Of few piles an interval is as wide as the chart.
+                let is_told = plan.piles.len() >= TELLING;
+                let interval = is_told.then(|| (inside(low), inside(high)));
                 Point { x: cost(good[index]), y: inside(mean), interval }
             })
             .collect();
