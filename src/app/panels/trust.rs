@@ -174,7 +174,7 @@ fn budget(ui: &mut Ui, state: &mut AppState) {
     }
     match &told {
         Some((_, answer)) => ui.label(answer),
-        None => ui.label("An error budget is being computed by idle cores: the first answer takes a minute or so."),
+        None => ui.label("Idle cores compute an error budget. The first answer takes a minute for a hundred grains, and hours for thousands."),
     };
     if let Some(work) = &budget.work {
         work.show(ui, "Error budget", "Stop", "What was found so far stays.");
