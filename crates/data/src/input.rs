@@ -29,7 +29,7 @@ pub(crate) fn open(path: &Path, form: &str) -> Result<File> {
 /// Reads a text that must be `form`.
 ///
 /// # Errors
-/// As [`open`], and where it is none or longer than any that is meant.
+/// Names the file and what the system says, that it is no plain file, no text, or longer than any that is meant.
 pub fn read_text(path: &Path, form: &str) -> Result<String> {
     let mut text = String::new();
     let read = open(path, form)?.take(MOST_OF_TEXT + 1).read_to_string(&mut text);
