@@ -9,7 +9,7 @@
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
-program=${SLUMP:-target/release/slump}
+program=$(realpath "${SLUMP:-target/release/slump}")
 seconds=${1:-60}
 . tests/display.sh
 
@@ -45,6 +45,8 @@ echo "soak.sh: $(value "s['step']") steps in $seconds s, $halfway MiB halfway an
 kill "$window"
 wait "$window" 2> /dev/null || true
 rm -f "$state"
+# It may save files, which go where it is started.
+cd "$work"
 "$program" --reset-ui --export-state "$state" > "$work/log" 2>&1 &
 window=$!
 wait_for "the lesson" "s['lesson'] == 1"
