@@ -112,15 +112,20 @@ xdotool key Right
 wait_for "a step after the device was lost" "s['step'] == 1 and s['devices'] == 2"
 import -window root "$shots/window-recovered.png"
 
+# Switches other piles on or off, on their page, until the expression is true.
+switch_other_piles() {
+    xdotool mousemove $(at more 0.5) click 1
+    sleep 1
+    xdotool mousemove $(at Compare 0.5) click 1
+    sleep 1
+    xdotool mousemove $(at "other piles" 0.1) click 1
+    wait_for "other piles" "$1"
+    xdotool mousemove $(at more 0.5) click 1
+    sleep 1
+}
+
 # Idle costs nothing: less than a tenth of a second of processor time in two. Other piles are no idleness.
-xdotool mousemove $(at more 0.5) click 1
-sleep 1
-xdotool mousemove $(at Compare 0.5) click 1
-sleep 1
-xdotool mousemove $(at "other piles" 0.1) click 1
-wait_for "the end of other piles" "s['other_threads'] == 0"
-xdotool mousemove $(at more 0.5) click 1
-sleep 1
+switch_other_piles "s['other_threads'] == 0"
 xdotool mousemove $(at "scene" 0.5)
 sleep 1
 ticks() { awk '{ print $14 + $15 }' "/proc/$window/stat"; }
@@ -151,14 +156,7 @@ wait_for "the layout of the last time" "abs(s['controls']['scene'][3] - $without
 wait_for "the lesson" "s['lesson'] == 1 and s['worlds'] == 2"
 xdotool mousemove $(at "Plots" 0.5) click 1
 sleep 0.5
-xdotool mousemove $(at more 0.5) click 1
-sleep 1
-xdotool mousemove $(at Compare 0.5) click 1
-sleep 1
-xdotool mousemove $(at "other piles" 0.1) click 1
-wait_for "other piles" "s['other_threads'] > 0"
-xdotool mousemove $(at more 0.5) click 1
-sleep 1
+switch_other_piles "s['other_threads'] > 0"
 xdotool search --name Slump windowfocus
 xdotool mousemove $(at "scene" 0.5)
 sleep 1

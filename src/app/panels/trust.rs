@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use egui::{Align2, RichText, Ui};
 
@@ -14,11 +15,11 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::app::work::Work;
 use crate::config::Config;
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::live::WorldFrame;
 use crate::output::counted;
 use crate::sim::AlarmKind;
-use crate::study::{BudgetOptions, Trust, made_budget};
+use crate::study::{BudgetOptions, ErrorBudget, Trust, made_budget};
 
 /// Time that a budget may take of the idle cores, s.
 const COST_SECS: f64 = 300.0;
@@ -102,9 +103,13 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
                     ui.label(line);
                 }
             }
-            let warning = theme::warning(ui.visuals().dark_mode);
+            // A lesson shows what goes wrong with open eyes.
+            let colour = match state.touring {
+                true => ui.visuals().text_color(),
+                false => theme::warning(ui.visuals().dark_mode),
+            };
             for alarm in alarms(state) {
-                ui.label(RichText::new(format!("▲ {alarm}")).color(warning));
+                ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
             }
             if let (Some(said), Some(world)) =
                 (state.said_of_ensemble(state.selected), state.world())
@@ -221,17 +226,17 @@ fn begin(ui: &Ui, state: &AppState, of: String, config: Config) -> RunBudget {
         let refuse = |error| Error::value("temporary folder", error, "one that can be made");
         let folder = tempfile::tempdir().map_err(refuse)?;
         let states: PathBuf = states.unwrap_or_else(|| folder.path().join("states"));
-        let begun = std::time::Instant::now();
-        let made = || -> Result<()> {
-            let tell = |budget: &crate::study::ErrorBudget| {
-                *to.lock().unwrap_or_else(PoisonError::into_inner) = budget.first_answer();
+        let begun = Instant::now();
+        let note = |budget: &ErrorBudget| {
+            *to.lock().unwrap_or_else(PoisonError::into_inner) = budget.first_answer();
+        };
+        on_idle_cores(|| {
+            let tell = |budget: &ErrorBudget| {
+                note(budget);
                 reporter.tell(begun.elapsed().as_secs_f64() / COST_SECS)
             };
-            let budget = made_budget(&options, folder.path(), &states, tell)?;
-            *to.lock().unwrap_or_else(PoisonError::into_inner) = budget.first_answer();
-            Ok(())
-        };
-        on_idle_cores(made)
+            made_budget(&options, folder.path(), &states, tell).map(|budget| note(&budget))
+        })
     });
     RunBudget { of, told, work: Some(work), failure: None }
 }
