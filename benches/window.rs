@@ -102,20 +102,23 @@ impl Window {
 }
 
 fn load(simulation: Simulation) -> Command {
-    Command::Load(Box::new(move |_| {
-        let view = [glam::DVec2::new(-0.1, 0.0), glam::DVec2::new(0.1, 0.06)];
-        let (name, held_by, tally) = ("bench".to_owned(), Vec::new(), Tally::default());
-        Ok(LiveStart {
-            name,
-            simulation,
-            tally,
-            duration_secs: f64::INFINITY,
-            held_by,
-            view,
-            slumps: true,
-            worlds: Vec::new(),
-            history: None,
-        })
+    let mut scene = slump::scene::built_in("pile").expect("a scene");
+    scene.duration_secs = f64::INFINITY;
+    let (config, window) = (Config::of_scene("pile"), None);
+    let view = [glam::DVec2::new(-0.1, 0.0), glam::DVec2::new(0.1, 0.06)];
+    let (held_by, tally, worlds) = (Vec::new(), Tally::default(), Vec::new());
+    let (slumps, history) = (true, None);
+    Command::Load(Box::new(LiveStart {
+        scene,
+        config,
+        window,
+        simulation,
+        tally,
+        held_by,
+        view,
+        slumps,
+        worlds,
+        history,
     }))
 }
 
@@ -241,10 +244,10 @@ fn steps() {
     let shown = best(&|| {
         let mut window = Window::open(pile());
         let start = Instant::now();
-        let (mut drawn, mut news) = (start, false);
+        let (mut drawn, mut shown) = (start, 0);
         window.state.live.send(Command::Play);
         loop {
-            news |= window.state.live.has_news();
+            let news = window.state.live.latest().number != shown;
             // The end is looked for in the newest frame, drawn or not: that a picture of it comes
             // later is no loss of the solver's.
             if window.newest_step() >= STEPS {
@@ -252,8 +255,9 @@ fn steps() {
             }
             // As the loop of a window does: a frame when there is something new, not too often.
             if news && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
-                (drawn, news) = (Instant::now(), false);
+                drawn = Instant::now();
                 window.draw();
+                shown = window.state.frame.number;
             } else {
                 std::thread::sleep(Duration::from_millis(1));
             }

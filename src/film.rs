@@ -12,7 +12,7 @@ use image::RgbaImage;
 use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result};
-use crate::output::{PendingFile, Texts, folder_of};
+use crate::output::{DraftFile, PendingFile, Texts, folder_of};
 
 /// Fewest and most pictures a second that players are asked for.
 pub(crate) const VIDEO_RATES_HZ: [f64; 2] = [1.0, 240.0];
@@ -42,7 +42,7 @@ pub(crate) struct Animation {
     path: PathBuf,
     picture_centisecs: u16,
     /// Two handles of one file: the encoder keeps the one that it writes to.
-    encoder: Option<Encoder<File>>,
+    encoder: Option<Encoder<DraftFile>>,
     draft: PendingFile,
     pictures: usize,
     /// Length of the pictures that are in the file, bytes; none where it has no lengths.
@@ -51,7 +51,7 @@ pub(crate) struct Animation {
 
 impl Animation {
     /// Pictures a second of an animation that comes nearest to so many, since a file counts in hundredths of a second.
-    #[cfg(feature = "window")]
+    #[cfg(feature = "panels")]
     pub(crate) fn nearest_rate_hz(rate_hz: f64) -> f64 {
         CENTISECS / f64::from(Self::centisecs(rate_hz))
     }

@@ -22,6 +22,10 @@
 //! `window`) and `cli`; `tests/house` checks it. The physics knows no screen. Without the feature `gpu`
 //! pictures are drawn by the processor alone. The same from Python is a package of its own, in `python/`.
 
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(dead_code, unused_imports, reason = "a page has neither files nor a command line")
+)]
 #![warn(missing_docs, unreachable_pub)]
 // They panic where a stream is closed or full: `output` has lines that do not.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
@@ -45,7 +49,7 @@ pub mod live;
 pub mod render;
 
 // The program: public for `main.rs`, tests and benches of this package, and for nobody else.
-#[cfg(feature = "window")]
+#[cfg(feature = "panels")]
 #[doc(hidden)]
 pub mod app;
 #[doc(hidden)]

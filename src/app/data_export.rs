@@ -3,7 +3,6 @@
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::mpsc::Receiver;
 
 use serde::{Deserialize, Serialize};
 
@@ -69,11 +68,11 @@ pub(crate) struct DataOrder {
 }
 
 impl DataOrder {
-    /// Writes a run that is on its way. Says what became of it.
-    pub(crate) fn write(&self, run: &Receiver<TakenRun>, reporter: &Reporter) -> Result<String> {
+    /// Writes a run, where it was not given up before it came. Says what became of it.
+    pub(crate) fn write(&self, run: Option<TakenRun>, reporter: &Reporter) -> Result<String> {
         let nothing = || Ok("Stopped before the first frame".to_owned());
         self.settings.validate("data-every")?;
-        let Some(run) = reporter.wait_for(run)? else { return nothing() };
+        let Some(run) = run else { return nothing() };
         let record = &run.world.record;
         let stretch = self.stretch_of(record)?;
         // Until the recording has it, which begins with the first moment of the stretch.
@@ -136,7 +135,7 @@ impl DataOrder {
 /// later on.
 fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<RunFacts> {
     let record = &run.world.record;
-    let mut scene = run.opened.scene.clone();
+    let mut scene = run.start.scene.clone();
     scene.set_settings(*simulation.settings());
     let step = simulation.observables().step;
     let changes: Vec<_> = record.changes(step, until_secs).collect();

@@ -10,7 +10,7 @@ use super::canvas::Canvas;
 use super::opening::TakenRun;
 use super::setting_control::written;
 use super::state::AppState;
-use super::work::{Work, received};
+use super::work::{MaySend, Work};
 use crate::config::SavedState;
 use crate::error::{Error, Result};
 use crate::live::Curve;
@@ -103,13 +103,23 @@ impl AppState {
     pub(super) fn export(
         &mut self,
         context: &egui::Context,
-        job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + Send + 'static,
+        job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + MaySend + 'static,
+    ) {
+        self.export_run(context, Vec::new(), |folder, printers, _: Vec<()>| job(folder, printers));
+    }
+
+    /// The same of what is handed out first.
+    pub(super) fn export_run<R: Send + 'static>(
+        &mut self,
+        context: &egui::Context,
+        runs: Vec<Receiver<R>>,
+        job: impl FnOnce(&Path, &mut Printers, Vec<R>) -> Result<PathBuf> + MaySend + 'static,
     ) {
         let (folder, printers) = (self.preferences.folder.clone(), self.exports.printers.clone());
-        self.exports.files.push_back(Work::start(context, move |_| {
+        self.exports.files.push_back(Work::start(context, runs, move |runs, _| {
             let mut printers = printers.lock().unwrap_or_else(PoisonError::into_inner);
             check_writable("folder", &folder)?;
-            job(&folder, &mut printers)
+            job(&folder, &mut printers, runs)
         }));
     }
 }
@@ -121,16 +131,16 @@ pub(super) fn write_table(path: &Path, curves: &[Curve], texts: &Texts) -> Resul
     write_curves(path, curves)
 }
 
-/// Writes a run that is on its way, by the moment that it has when it is handed out: it may go on meanwhile.
-pub(super) fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<PathBuf> {
-    let TakenRun { opened, world } = received(run)?;
+/// Writes the moment that a run had when it was handed out: it may go on meanwhile.
+pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
+    let TakenRun { start, world } = run;
     if world.failure.is_some() {
         return Err(not_finite());
     }
     let settings = [*world.simulation.settings()];
-    let stem = stem(&opened.scene.name, &settings, world.simulation.time_secs());
+    let stem = stem(&start.scene.name, &settings, world.simulation.time_secs());
     let path = free_path(folder, &stem, STATE_ENDING);
-    SavedState::new(opened.scene.clone(), world.simulation, world.tally).save(&path)?;
+    SavedState::new(start.scene.clone(), world.simulation, world.tally).save(&path)?;
     Ok(path)
 }
 

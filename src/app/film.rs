@@ -3,7 +3,6 @@
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::mpsc::Receiver;
 
 use super::export::{ScenePicture, free_path};
 use super::opening::TakenRun;
@@ -57,11 +56,9 @@ pub(crate) struct FilmOrder {
 
 impl FilmOrder {
     /// Makes it of runs that are on their way, one a world. Says what became of it.
-    pub(crate) fn make(self, runs: &[Receiver<TakenRun>], reporter: &Reporter) -> Result<String> {
-        let format = self.format;
-        let taken = runs.iter().map_while(|run| reporter.wait_for(run).transpose());
-        let taken = taken.collect::<Result<Vec<_>>>()?;
-        let made = if taken.len() == runs.len() { self.write(&taken, reporter)? } else { None };
+    pub(crate) fn make(self, runs: &[TakenRun], reporter: &Reporter) -> Result<String> {
+        let (format, count) = (self.format, self.picture.worlds.len());
+        let made = if runs.len() == count { self.write(runs, reporter)? } else { None };
         let Some((path, pictures)) = made else {
             return Ok(format!("Stopped: there is no {}", format.name()));
         };

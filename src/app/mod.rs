@@ -4,6 +4,8 @@
 //! `window` runs it on a screen. The simulation itself runs on the thread of
 //! [`crate::live`].
 
+#[cfg(target_arch = "wasm32")]
+pub mod browser;
 mod budget;
 mod camera;
 mod canvas;
@@ -22,17 +24,25 @@ mod setting_control;
 mod sharing;
 mod state;
 pub mod theme;
+mod told;
 mod ui;
+#[cfg(feature = "window")]
 mod window;
 mod work;
+
+/// True in a browser, which has neither files nor threads nor programs beside it.
+const IS_PAGE: bool = cfg!(target_arch = "wasm32");
 
 pub use canvas::Canvas;
 pub use data_export::DataChoices;
 pub use ensemble::Ensemble;
+pub use opening::Opening;
 pub use panels::{FRONT_SETTINGS, Grabbing, GrainRef, Page};
 pub use plots::ChosenPlot;
 pub use preferences::Preferences;
 pub use state::{AppState, Notice};
 pub use ui::ui;
+#[cfg(feature = "window")]
 pub use window::SOFTWARE_FRAME_INTERVAL;
+#[cfg(feature = "window")]
 pub(crate) use window::{WindowOptions, run};

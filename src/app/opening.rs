@@ -1,156 +1,141 @@
-//! Opening: from what a user asks for to a start that the solver's thread makes, and what was opened last.
+//! Opening: from what a user asks for to a start, which is made where the run is computed.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::Context;
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
+use web_time::Instant;
 
 use super::budget;
 use super::export::STATE_ENDING;
-use super::lessons::Lesson;
-use super::session::{Arrangement, SESSION_ENDING, open_session};
+use super::lessons::LESSONS;
+use super::session::{SESSION_ENDING, open_session};
 use super::sharing::RunLink;
 use super::state::AppState;
 use crate::config::{Config, SavedState, SceneSource};
 use crate::error::Result;
-use crate::live::{Command, LiveStart, LoadingProgress, Preview, RunHistory, WorldHistory};
+use crate::live::{
+    Command, LiveStart, LoadingProgress, Preview, RunHistory, StartSource, Tell, WorldHistory,
+    as_json, source_to_bytes,
+};
 use crate::scene::{Scene, Settling};
 use crate::sim::{GrainView, Simulation, Snapshot, Tally};
 use crate::world::{Boundary, Disc, Gravity};
 
-/// What a run began with.
-#[derive(Debug)]
-pub(crate) struct Opened {
-    pub scene: Scene,
-    /// What opens that scene again.
-    pub config: Config,
-    /// How the window was arranged, where it is of a session.
-    pub arrangement: Option<Arrangement>,
+/// What a start is made from. It is data, so that it can be sent to where the run is computed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub enum Opening {
+    /// A scene.
+    Scene(#[serde(with = "as_json")] Box<Config>),
+    /// A lesson by its place, with its worlds side by side.
+    Lesson(usize),
+    /// What a link tells of, with what its worlds have come to. Settings are those that it says, whatever the window
+    /// would choose.
+    Link(String),
+    /// A saved run, to go on with it.
+    Run(Box<SavedState>),
+    /// A session, with its window as it was arranged.
+    Session(Box<LiveStart>),
+    /// The file of one of these two.
+    File(PathBuf),
+    /// One of these, with the file that it names.
+    #[cfg(target_arch = "wasm32")]
+    With {
+        /// Its name.
+        path: PathBuf,
+        /// All that is in it.
+        bytes: Vec<u8>,
+        /// What names it.
+        opening: Box<Opening>,
+    },
 }
 
-impl Opened {
-    /// Of no session.
-    pub(super) fn new(scene: Scene, config: Config) -> Self {
-        Self { scene, config, arrangement: None }
+impl StartSource for Opening {
+    fn make(self: Box<Self>, tell: Tell<'_>) -> Result<LiveStart> {
+        match *self {
+            Self::Scene(config) => {
+                let mut scene = settled(&config, tell)?;
+                budget::complete(&mut scene, &config.solver);
+                start(&scene, *config)
+            }
+            Self::Lesson(at) => {
+                let lesson = &LESSONS[at.min(LESSONS.len() - 1)];
+                let (config, mut scene) = lesson.scene()?;
+                budget::complete(&mut scene, &config.solver);
+                let worlds = (lesson.worlds)(scene.settings());
+                Ok(LiveStart { worlds, ..start(&scene, config)? })
+            }
+            Self::Link(text) => {
+                let link = RunLink::read(&text)?;
+                let config = link.config();
+                let scene = settled(&config, tell)?;
+                let start = start(&scene, config)?;
+                let plans = link.plans(&scene.settings());
+                let history = RunHistory::computed(&start.simulation, start.tally, &plans, tell)?;
+                Ok(LiveStart { history: Some(history), ..start })
+            }
+            Self::Run(state) => Ok(start_of_run(*state)),
+            Self::Session(start) => Ok(*start),
+            Self::File(path) if is_session(&path) => open_session(&path),
+            Self::File(path) => Ok(start_of_run(SavedState::open(&path)?)),
+            #[cfg(target_arch = "wasm32")]
+            Self::With { path, bytes, opening } => {
+                crate::output::give_file(path, bytes);
+                opening.make(tell)
+            }
+        }
     }
-}
 
-/// What was opened last. It is noted where a start is made and looked up where a run is taken down, both on
-/// the solver's thread, so that it is of the run that is there.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct LastOpened(Arc<Mutex<Option<Arc<Opened>>>>);
-
-impl LastOpened {
-    /// Notes what is opened.
-    pub(crate) fn note(&self, opened: Opened) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(opened));
-    }
-
-    /// What was opened last; nothing before the first.
-    pub(crate) fn get(&self) -> Option<Arc<Opened>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    fn to_bytes(&self) -> Result<Vec<u8>> {
+        source_to_bytes(self)
     }
 }
 
 /// A run that is to be written down.
 pub(crate) struct TakenRun {
-    pub opened: Arc<Opened>,
+    pub start: Arc<LiveStart>,
     pub world: WorldHistory,
 }
 
 /// Height of the walls that are drawn around a pile, in its own heights.
 const WALL_HEIGHTS: f64 = 1.1;
 
-/// Hears how far a start has come. False where it is given up.
-type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
-
 impl AppState {
     /// Opens a scene.
     pub fn load(&mut self, config: Config) {
-        self.leave_lessons();
         self.config = config.clone();
-        self.open(move |tell| {
-            let mut scene = settled(&config, tell)?;
-            budget::complete(&mut scene, &config.solver);
-            Ok((start(&scene)?, Opened::new(scene, config)))
-        });
-    }
-
-    /// Opens a lesson, with its worlds side by side.
-    pub(super) fn load_lesson(&mut self, lesson: &'static Lesson) {
-        self.open(move |_| {
-            let (config, mut scene) = lesson.scene()?;
-            budget::complete(&mut scene, &config.solver);
-            let worlds = (lesson.worlds)(scene.settings());
-            Ok((LiveStart { worlds, ..start(&scene)? }, Opened::new(scene, config)))
-        });
-    }
-
-    /// Opens what a link tells of, with what its worlds have come to. Settings are those that it says, whatever the
-    /// window would choose.
-    pub(super) fn load_link(&mut self, link: RunLink) {
-        self.leave_lessons();
-        self.open(move |tell| {
-            let config = link.config();
-            let scene = settled(&config, tell)?;
-            let start = start(&scene)?;
-            let plans = link.plans(&scene.settings());
-            let history = RunHistory::computed(&start.simulation, start.tally, &plans, tell)?;
-            Ok((LiveStart { history: Some(history), ..start }, Opened::new(scene, config)))
-        });
-    }
-
-    /// Opens a session, with its window as it was arranged.
-    pub(super) fn load_session(
-        &mut self,
-        session: impl FnOnce() -> Result<(LiveStart, Opened)> + Send + 'static,
-    ) {
-        self.leave_lessons();
-        self.open(move |_| session());
+        self.open(Opening::Scene(Box::new(config)));
     }
 
     /// Opens a saved run, to go on with it.
     pub fn load_run(&mut self, state: SavedState) {
-        self.leave_lessons();
-        self.open(move |_| Ok(start_of_run(state)));
+        self.open(Opening::Run(Box::new(state)));
     }
 
     /// Opens the file of a saved run or of a session, to go on with it.
     pub fn load_saved(&mut self, path: &Path) {
         self.exports.data.saved_run = path.display().to_string();
-        let path = path.to_owned();
-        if path.extension().is_some_and(|ending| ending == SESSION_ENDING) {
-            return self.load_session(move || open_session(&path));
-        }
-        self.leave_lessons();
-        self.open(move |_| Ok(start_of_run(SavedState::open(&path)?)));
+        self.open(Opening::File(path.to_owned()));
     }
 
-    /// Has the solver's thread make a start, and notes what it is of.
-    fn open(
-        &mut self,
-        make: impl FnOnce(Tell<'_>) -> Result<(LiveStart, Opened)> + Send + 'static,
-    ) {
-        let last = self.opening.last.clone();
-        self.live.send(Command::Load(Box::new(move |tell| {
-            let (start, opened) = make(tell)?;
-            last.note(opened);
-            Ok(start)
-        })));
+    /// Has a start made where the run is computed. Other than for a lesson, lessons are left.
+    pub(crate) fn open(&mut self, opening: Opening) {
+        if !matches!(opening, Opening::Lesson(_)) {
+            self.leave_lessons();
+        }
+        self.live.send(Command::Load(Box::new(opening)));
     }
 
     /// Asks for a world's run. It comes between two steps; nothing comes where that world is gone.
     pub(crate) fn take_run(&mut self, world: usize) -> Receiver<TakenRun> {
         let (sender, receiver) = channel();
-        let last = self.opening.last.clone();
-        let hand_on = move |world| {
-            if let Some(opened) = last.get() {
-                // Whoever asked may have gone.
-                let _ = sender.send(TakenRun { opened, world });
-            }
+        let hand_on = move |start, world| {
+            // Whoever asked may have gone.
+            let _ = sender.send(TakenRun { start, world });
         };
         self.live.send(Command::Take(world, Box::new(hand_on)));
         receiver
@@ -164,29 +149,31 @@ fn settled(config: &Config, tell: Tell<'_>) -> Result<Scene> {
 }
 
 /// The start of a saved run, which goes on in time.
-fn start_of_run(state: SavedState) -> (LiveStart, Opened) {
+fn start_of_run(state: SavedState) -> LiveStart {
     let SavedState { scene, simulation, tally, .. } = state;
-    let start = start_with(&scene, simulation, tally, Vec::new());
     let config = Config::of_scene(&scene.name);
-    (start, Opened::new(scene, config))
+    start_with(&scene, config, simulation, tally, Vec::new())
 }
 
-fn start(scene: &Scene) -> Result<LiveStart> {
-    Ok(start_with(scene, scene.simulation()?, Tally::default(), walls(scene)))
+/// The start of a scene, which `config` opens.
+pub(super) fn start(scene: &Scene, config: Config) -> Result<LiveStart> {
+    Ok(start_with(scene, config, scene.simulation()?, Tally::default(), walls(scene)))
 }
 
 fn start_with(
     scene: &Scene,
+    config: Config,
     simulation: Simulation,
     tally: Tally,
     held_by: Vec<Boundary>,
 ) -> LiveStart {
     let view = scene.view();
     LiveStart {
-        name: scene.name.clone(),
+        scene: scene.clone(),
+        config,
+        window: None,
         simulation,
         tally,
-        duration_secs: scene.duration_secs,
         held_by,
         view: [view.min, view.max],
         slumps: slumps(scene),
@@ -304,26 +291,41 @@ fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
     [DVec2::new(lower.x, lower.y.min(0.0)) - diameter, upper + diameter]
 }
 
-/// Opens the last file that was dropped in this frame.
+/// Opens the last file that was dropped in this frame. A page has to wait for its content.
 pub(super) fn take_dropped_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
-    let Some(file) = dropped else { return };
+    let Some(file) = dropped.filter(|_| cfg!(not(target_arch = "wasm32"))) else { return };
     let path = file.path();
-    if is_saved_run(path) {
-        state.load_saved(path);
-    } else if let Some(config) = dropped_scene(path) {
-        state.load(config);
-    } else {
-        let name = path.display();
-        state.warn(format!(
-            "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING}) nor a session (.{SESSION_ENDING})"
-        ));
+    match opening_of(path) {
+        Some(Opening::File(path)) => state.load_saved(&path),
+        Some(opening) => state.open(opening),
+        None => state.warn(refused_file(path)),
     }
+}
+
+/// What opens a file, by its name.
+pub(super) fn opening_of(path: &Path) -> Option<Opening> {
+    if is_saved_run(path) {
+        return Some(Opening::File(path.to_owned()));
+    }
+    Some(Opening::Scene(Box::new(dropped_scene(path)?)))
+}
+
+/// That a file is none of those that can be opened.
+pub(super) fn refused_file(path: &Path) -> String {
+    let name = path.display();
+    format!(
+        "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING}) nor a session (.{SESSION_ENDING})"
+    )
+}
+
+fn is_session(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == SESSION_ENDING)
 }
 
 /// True for the name of a saved run or a session.
 pub(super) fn is_saved_run(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == STATE_ENDING || ending == SESSION_ENDING)
+    is_session(path) || path.extension().is_some_and(|ending| ending == STATE_ENDING)
 }
 
 /// What opens a file that is a scene or a list of discs by its name.

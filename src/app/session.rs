@@ -11,20 +11,18 @@ use serde::{Deserialize, Serialize};
 
 use super::camera::SceneCamera;
 use super::export::{free_path, not_finite, write_state};
-use super::opening::Opened;
 use super::panels::see::file_stem;
 use super::preferences::{Preferences, StoredWindow};
 use super::state::AppState;
-use super::work::received;
+use super::work::closed;
 use crate::error::{Error, Result};
 use crate::live::{Command, LiveStart};
 use crate::output::{Seal, write_file};
-use crate::scene::Scene;
 
 /// What files begin with.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
-    format: 3,
+    format: 4,
     what: "session",
     of: "",
     form: "a session that the window saved",
@@ -42,47 +40,37 @@ pub(crate) struct Arrangement {
     pub camera: SceneCamera,
 }
 
-/// What is in a file.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Session {
-    start: LiveStart,
-    scene: Scene,
-    /// What opens the scene again, as JSON.
-    config: String,
-    /// The [`Arrangement`], as RON.
-    window: String,
+/// Reads a file: the start, with how the window was arranged.
+pub(super) fn open_session(path: &Path) -> Result<LiveStart> {
+    let start: LiveStart = SEAL.open(path)?;
+    let is_sound = start.history.as_ref().is_some_and(|history| history.is_sound());
+    if !is_sound || arrangement_of(&start).is_none() {
+        let reason = format!("holds no whole session, but must be {}", SEAL.form);
+        return Err(Error::file(path, reason));
+    }
+    Ok(start)
 }
 
-/// Reads a file: the start, and what it is of with how the window was arranged.
-pub(super) fn open_session(path: &Path) -> Result<(LiveStart, Opened)> {
-    let Session { start, scene, config, window } = SEAL.open(path)?;
-    let is_sound = start.history.as_ref().is_some_and(|history| history.is_sound());
-    match (serde_json::from_str(&config), ron::from_str(&window)) {
-        (Ok(config), Ok(arrangement)) if is_sound => {
-            Ok((start, Opened { scene, config, arrangement: Some(arrangement) }))
-        }
-        _ => Err(Error::file(path, format!("holds no whole session, but must be {}", SEAL.form))),
-    }
+/// How the window is to be arranged; nothing where the start is of no session.
+pub(super) fn arrangement_of(start: &LiveStart) -> Option<Arrangement> {
+    ron::from_str(start.window.as_ref()?).ok()
 }
 
 /// Writes a file.
-fn save(start: LiveStart, opened: &Opened, window: String, path: &Path) -> Result<()> {
+fn save(start: &LiveStart, path: &Path) -> Result<()> {
     if start.history.as_ref().is_some_and(|history| history.failure().is_some()) {
         return Err(not_finite());
     }
-    let Opened { scene, config, .. } = opened;
-    let refuse = |error| Error::value("scene", &scene.name, format!("written ({error})"));
-    let config = serde_json::to_string(config).map_err(refuse)?;
-    let session = Session { start, scene: scene.clone(), config, window };
-    write_file(path, &SEAL.written(&session)?)
+    write_file(path, &SEAL.written(start)?)
 }
 
 impl AppState {
     /// Saves the moment that the selected world has come to.
     pub(crate) fn save_state(&mut self, context: &egui::Context) {
         let run = self.take_run(self.selected);
-        self.export(context, move |folder, _| write_state(folder, &run));
+        self.export_run(context, vec![run], |folder, _, mut runs| {
+            write_state(folder, runs.pop().ok_or_else(closed)?)
+        });
     }
 
     /// Saves all worlds with their history, and how the window is arranged.
@@ -94,22 +82,19 @@ impl AppState {
         let Self { touring, selected, camera, .. } = *self;
         let arrangement = Arrangement { stored, touring, selected, camera };
         let (sender, run) = channel();
-        let last = self.opening.last.clone();
         let hand_on = move |start: LiveStart| {
-            if let Some(opened) = last.get() {
-                // Whoever asked may have gone.
-                let _ = sender.send((start, opened));
-            }
+            // Whoever asked may have gone.
+            let _ = sender.send(start);
         };
         self.live.send(Command::TakeAll(Box::new(hand_on)));
         let stem = file_stem(self);
-        self.export(context, move |folder, _| {
+        self.export_run(context, vec![run], move |folder, _, mut runs| {
             let path = free_path(folder, &stem, SESSION_ENDING);
             let refuse =
                 |error| Error::value("window", "arranged so", format!("written ({error})"));
             let window = ron::to_string(&arrangement).map_err(refuse)?;
-            let (start, opened) = received(&run)?;
-            save(start, &opened, window, &path).map(|()| path)
+            let start = LiveStart { window: Some(window), ..runs.pop().ok_or_else(closed)? };
+            save(&start, &path).map(|()| path)
         });
     }
 

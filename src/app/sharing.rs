@@ -9,11 +9,13 @@
 //! world with the step that it has come to; what follows is the next world. What is left out is as the scene
 //! says, or as before.
 
+use std::sync::OnceLock;
+
 use egui::Context;
 
 use super::opening::TakenRun;
 use super::state::{AppState, Notice};
-use super::work::{Work, received};
+use super::work::Work;
 use crate::config::{
     Config, Provenance, SceneSource, asked_time_secs, joined, words_of, words_up_to,
 };
@@ -40,7 +42,7 @@ impl AppState {
     /// What a world is made of; nothing where its scene is no longer there.
     fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
         let settings = self.wanted.get(world)?.settings;
-        let scene = self.frame.start.as_ref()?.name.clone();
+        let scene = self.frame.start.as_ref()?.scene.name.clone();
         Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
     }
 
@@ -88,6 +90,21 @@ impl AppState {
 /// What links begin with.
 pub(crate) const LINK_START: &str = "slump://";
 const HEAD: &str = "slump://run?";
+/// What links of a page begin with: its own address.
+static PAGE: OnceLock<String> = OnceLock::new();
+
+/// Has links begin with the address of a page.
+#[cfg(target_arch = "wasm32")]
+pub(super) fn set_link_start(start: String) {
+    let _ = PAGE.set(start);
+}
+
+/// True for what may be a link, of a window or of a page.
+pub(super) fn is_link(text: &str) -> bool {
+    let text = text.trim_start();
+    text.starts_with(LINK_START) || (text.starts_with("http") && text.contains("?scene="))
+}
+
 /// What a link must be, for messages.
 const FORM: &str = "a line that Copy link gave: slump://run?…&to=STEP";
 /// More of a link is no help in a message.
@@ -118,11 +135,12 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
 /// The link of worlds, and true where a hand pulled or changed something in any of them, which it does not tell.
 /// Refused where the run went on from a file, or its scene is no longer there.
 fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
-    let source = runs.first().map(|run| run.opened.config.source.clone()).unwrap_or_default();
+    let source = runs.first().map(|run| run.start.config.source.clone()).unwrap_or_default();
     check_names_no_file(&source)?;
     let unchanged = Config { source, ..Config::default() };
     let base = unchanged.without_settling()?.settings();
-    let mut query = form_urlencoded::Serializer::new(HEAD.to_owned());
+    let mut query =
+        form_urlencoded::Serializer::new(PAGE.get().map_or(HEAD, |page| page).to_owned());
     append(&mut query, &unchanged.words(&base)?);
     let mut is_by_hand = false;
     for TakenRun { world, .. } in runs {
@@ -155,7 +173,8 @@ impl RunLink {
     pub(crate) fn read(text: &str) -> Result<Self> {
         let text = text.trim();
         let refuse = || Error::value("link", shortened(text), FORM);
-        let query = text.strip_prefix(HEAD).ok_or_else(refuse)?;
+        let page = || text.starts_with("http").then(|| text.split_once('?')).flatten();
+        let query = text.strip_prefix(HEAD).or_else(|| Some(page()?.1)).ok_or_else(refuse)?;
         let mut link = Self { source: SceneSource::default(), worlds: Vec::new() };
         let (mut after, mut options) = (0, Vec::new());
         let mut changes = Vec::new();
@@ -261,9 +280,7 @@ impl AppState {
     pub fn copy_link(&mut self, context: &Context) {
         let worlds = 0..self.frame.worlds.len();
         let runs: Vec<_> = worlds.map(|world| self.take_run(world)).collect();
-        self.exports.link = Some(Work::start(context, move |_| {
-            link_of(&runs.iter().map(received).collect::<Result<Vec<_>>>()?)
-        }));
+        self.exports.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
     /// Copies the link once it is made.
@@ -301,6 +318,15 @@ mod tests {
     }
 
     #[test]
+    fn the_address_of_a_page_is_a_link() {
+        let query = "scene=pile&bond=20&dt=5e-3&to=300";
+        let address = format!("https://example.org/slump/?{query}");
+        assert!(is_link(&address) && !is_link("https://example.org/"));
+        let read = |text: &str| RunLink::read(text).expect("a link");
+        assert_eq!(read(&address), read(&format!("slump://run?{query}")));
+    }
+
+    #[test]
     fn what_is_no_link_is_refused_in_a_sentence() {
         for (text, said) in [
             (
@@ -308,6 +334,7 @@ mod tests {
                 "link is http://example.org, but must be a line that Copy link gave",
             ),
             ("slump://run?scene=pile", "but must be a line"),
+            ("http://example.org/?scene=pile", "but must be a line"),
             ("slump://run?scene=pile&to=3&bond=5", "but must be a line"),
             ("slump://run?scene=pile&to=-3", "link: to is -3, but must be the number of a step"),
             ("slump://run?from=9&to=3", "link: to is 3, but must be no step before 9"),

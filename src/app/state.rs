@@ -3,22 +3,23 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
 
 use egui::{Color32, Rect, Ui};
+use web_time::Instant;
 
 use super::camera::SceneCamera;
 use super::data_export::DataPanel;
 use super::ensemble::Ensemble;
 use super::export::Printers;
 use super::film::FilmFormat;
-use super::opening::{LastOpened, is_saved_run};
+use super::opening::is_saved_run;
 use super::painting::LegendCache;
 use super::panels::distributions::Distributions;
 use super::panels::speed::StepRace;
 use super::panels::trust::RunBudget;
 use super::panels::{Grabbing, GrainRef};
 use super::preferences::Preferences;
+use super::session::arrangement_of;
 use super::theme;
 use super::work::Work;
 use crate::config::Config;
@@ -60,10 +61,9 @@ pub struct AppState {
     pub controls: BTreeMap<String, Rect>,
 }
 
-/// What is being opened, and what was opened last.
+/// What is being opened.
 #[derive(Default)]
 pub(super) struct OpeningState {
-    pub last: LastOpened,
     /// How the panels of a session that is being opened lay.
     pub layout: Option<egui::Memory>,
     seen_loads: u64,
@@ -190,9 +190,9 @@ impl AppState {
         self.exports.data.stretch = None;
         self.race = None;
         self.draft = None;
-        if let Some(opened) = self.opening.last.get() {
-            self.config.clone_from(&opened.config);
-            if let Some(arrangement) = opened.arrangement.clone() {
+        if let Some(start) = self.frame.start.clone() {
+            self.config.clone_from(&start.config);
+            if let Some(arrangement) = arrangement_of(&start) {
                 self.arrange(arrangement);
             }
         }

@@ -2,9 +2,10 @@
 
 use egui::{CentralPanel, Context, Event, Frame, Key, Margin, Modifiers, Panel, ScrollArea, Ui};
 
+use super::opening::Opening;
 use super::painting::fill;
 use super::panels::{Page, front, grain, help, plots, scene, see, status, trust};
-use super::sharing::{LINK_START, RunLink};
+use super::sharing::{RunLink, is_link};
 use super::state::AppState;
 use super::work::progress_bar;
 use super::{lessons, opening};
@@ -182,16 +183,15 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
 
 /// Opens a link that is pasted where no field takes it.
 fn take_link(context: &Context, state: &mut AppState) {
-    let is_link = |text: &str| text.trim_start().starts_with(LINK_START);
     let pasted = context.input(|input| {
         input.events.iter().rev().find_map(|event| match event {
             Event::Paste(text) if is_link(text) => Some(text.clone()),
             _ => None,
         })
     });
-    match pasted.map(|text| RunLink::read(&text)) {
-        Some(Ok(link)) => state.load_link(link),
-        Some(Err(refusal)) => state.warn(refusal.to_string()),
-        None => {}
+    let Some(text) = pasted else { return };
+    match RunLink::read(&text) {
+        Ok(_) => state.open(Opening::Link(text)),
+        Err(refusal) => state.warn(refusal.to_string()),
     }
 }

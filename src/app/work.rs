@@ -1,24 +1,48 @@
 //! Work that takes longer than the window may wait: on a thread of its own, with how far it is, and to be stopped.
 
+#[cfg(target_arch = "wasm32")]
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::Ui;
+use web_time::Instant;
 
 use crate::error::{Error, Result};
+use crate::live::receive_within;
 
 /// Least time between two looks at what the window says, and between two frames that show how far it is.
 const INTERVAL: Duration = Duration::from_millis(50);
 
+/// What may be done on another thread, where there is one.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) trait MaySend: Send {}
+#[cfg(not(target_arch = "wasm32"))]
+impl<T: Send> MaySend for T {}
+/// What may be done on another thread, where there is one.
+#[cfg(target_arch = "wasm32")]
+pub(crate) trait MaySend {}
+#[cfg(target_arch = "wasm32")]
+impl<T> MaySend for T {}
+
 /// Work that is going on.
 pub(crate) struct Work<T> {
     shared: Arc<WorkState>,
-    outcome: Receiver<Result<T>>,
-    thread: Option<JoinHandle<()>>,
+    doer: Doer<T>,
+}
+
+/// Who does it.
+enum Doer<T> {
+    /// A thread.
+    #[cfg(not(target_arch = "wasm32"))]
+    Thread { outcome: Receiver<Result<T>>, thread: Option<JoinHandle<()>> },
+    /// Whoever asks what became of it, where no thread can be made: as in a page.
+    #[cfg(target_arch = "wasm32")]
+    Asker(RefCell<Box<dyn FnMut() -> Option<Result<T>>>>),
 }
 
 /// What window and thread tell each other.
@@ -37,22 +61,73 @@ pub(crate) struct Reporter {
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Starts it.
-    pub(crate) fn start(
+    /// Starts it, once the runs that it is about have been handed out; with fewer of them where it is given up before.
+    pub(crate) fn start<R: Send + 'static>(
         context: &egui::Context,
-        work: impl FnOnce(&Reporter) -> Result<T> + Send + 'static,
+        runs: Vec<Receiver<R>>,
+        work: impl FnOnce(Vec<R>, &Reporter) -> Result<T> + MaySend + 'static,
     ) -> Self {
         let shared = Arc::new(WorkState::default());
+        let shown = Mutex::new(Instant::now());
+        let reporter = Reporter { shared: Arc::clone(&shared), context: context.clone(), shown };
+        let mut job = Job { coming: runs, came: Vec::new(), work: Some(work) };
+        let doer = Doer::of(move |patience| job.advance(&reporter, patience), context.clone());
+        Self { shared, doer }
+    }
+}
+
+impl<T: Send + 'static> Doer<T> {
+    #[cfg(target_arch = "wasm32")]
+    fn of(
+        mut advance: impl FnMut(Duration) -> Option<Result<T>> + 'static,
+        _: egui::Context,
+    ) -> Self {
+        Self::Asker(RefCell::new(Box::new(move || advance(Duration::ZERO))))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn of(
+        mut advance: impl FnMut(Duration) -> Option<Result<T>> + Send + 'static,
+        context: egui::Context,
+    ) -> Self {
         let (outbox, outcome) = channel();
-        let (context, of_thread) = (context.clone(), Arc::clone(&shared));
         let thread = std::thread::spawn(move || {
-            let shown = Mutex::new(Instant::now());
-            let reporter = Reporter { shared: of_thread, context, shown };
+            let outcome = loop {
+                if let Some(outcome) = advance(INTERVAL) {
+                    break outcome;
+                }
+            };
             // The window may have closed.
-            let _ = outbox.send(work(&reporter));
-            reporter.context.request_repaint();
+            let _ = outbox.send(outcome);
+            context.request_repaint();
         });
-        Self { shared, outcome, thread: Some(thread) }
+        Self::Thread { outcome, thread: Some(thread) }
+    }
+}
+
+/// What is to be done once all runs are there.
+struct Job<R, Act> {
+    coming: Vec<Receiver<R>>,
+    came: Vec<R>,
+    work: Option<Act>,
+}
+
+impl<R, Act> Job<R, Act> {
+    /// Waits a while for a run that is not there, else does the work. What came of it, once it is done.
+    fn advance<T>(&mut self, reporter: &Reporter, patience: Duration) -> Option<Result<T>>
+    where
+        Act: FnOnce(Vec<R>, &Reporter) -> Result<T>,
+    {
+        while let Some(run) = self.coming.get(self.came.len())
+            && !reporter.is_cancelled()
+        {
+            match receive_within(run, patience) {
+                Ok(run) => self.came.push(run),
+                Err(RecvTimeoutError::Timeout) => return None,
+                Err(RecvTimeoutError::Disconnected) => return Some(Err(closed())),
+            }
+        }
+        Some(self.work.take()?(std::mem::take(&mut self.came), reporter))
     }
 }
 
@@ -65,7 +140,11 @@ impl<T> Work<T> {
     /// Ends it and waits until it has: files are closed before the process may end.
     pub(super) fn end(&mut self) {
         self.cancel();
-        let _ = self.thread.take().map(JoinHandle::join);
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let Doer::Thread { thread, .. } = &mut self.doer;
+            let _ = thread.take().map(JoinHandle::join);
+        }
     }
 
     /// Shows how far it is by that `name`, and the button that stops it.
@@ -84,12 +163,17 @@ impl<T> Work<T> {
 
     /// What became of it, once it has ended.
     pub(crate) fn outcome(&self) -> Option<Result<T>> {
-        match self.outcome.try_recv() {
-            Ok(outcome) => Some(outcome),
-            Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => {
-                Some(Err(Error::value("work", "ended by a fault", "ended when it is done")))
-            }
+        match &self.doer {
+            #[cfg(not(target_arch = "wasm32"))]
+            Doer::Thread { outcome, .. } => match outcome.try_recv() {
+                Ok(outcome) => Some(outcome),
+                Err(TryRecvError::Empty) => None,
+                Err(TryRecvError::Disconnected) => {
+                    Some(Err(Error::value("work", "ended by a fault", "ended when it is done")))
+                }
+            },
+            #[cfg(target_arch = "wasm32")]
+            Doer::Asker(ask) => ask.borrow_mut()(),
         }
     }
 }
@@ -121,25 +205,9 @@ impl Reporter {
     fn is_cancelled(&self) -> bool {
         self.shared.is_cancelled.load(Ordering::Relaxed)
     }
-
-    /// A run, once the solver's thread has handed it out; nothing where the work is given up before.
-    pub(crate) fn wait_for<R>(&self, run: &Receiver<R>) -> Result<Option<R>> {
-        while !self.is_cancelled() {
-            match run.recv_timeout(INTERVAL) {
-                Ok(run) => return Ok(Some(run)),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Err(closed()),
-            }
-        }
-        Ok(None)
-    }
 }
 
-/// A run, once the solver's thread has handed it out.
-pub(super) fn received<R>(run: &Receiver<R>) -> Result<R> {
-    run.recv().map_err(|_| closed())
-}
-
-fn closed() -> Error {
+/// Why there is no run to work on.
+pub(super) fn closed() -> Error {
     Error::value("run", "closed", "open until it is written")
 }

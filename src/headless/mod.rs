@@ -11,7 +11,7 @@ mod writer;
 
 pub(crate) use options::HeadlessOptions;
 pub(crate) use run::settled;
-#[cfg(feature = "window")]
+#[cfg(feature = "panels")]
 pub(crate) use {waiting::WaitingStates, writer::recording_sentence};
 
 use std::path::Path;

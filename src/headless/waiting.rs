@@ -1,6 +1,5 @@
 //! States that wait on disk for being drawn.
 
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -9,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::HeadlessOptions;
 use super::folder::{Marks, WAITING};
 use crate::error::{Error, Result};
+use crate::output::{DraftFile, nameless_file};
 use crate::render::{Style, automatic_range, force_reference};
 use crate::sim::Snapshot;
 
@@ -17,7 +17,7 @@ use crate::sim::Snapshot;
 /// run is to go on after that.
 pub(crate) struct WaitingStates {
     path: PathBuf,
-    file: File,
+    file: DraftFile,
     /// Where in the file each state begins, and where the last one ends.
     places: Vec<u64>,
     range: Option<(f64, f64)>,
@@ -63,14 +63,18 @@ impl WaitingStates {
     /// Starts with none. The file is in `folder`, or where the system has such files if none can be
     /// there.
     pub(crate) fn start(folder: &Path) -> Result<Self> {
-        let file = tempfile::tempfile_in(folder).or_else(|_| tempfile::tempfile());
+        let file = nameless_file(folder).or_else(|_| nameless_file(&std::env::temp_dir()));
         Ok(Self::of(folder, file.map_err(|error| Error::file(folder, error))?))
     }
 
     /// Goes on with the states in the first `length` bytes of a file of that name, which are to be drawn in
     /// that style. With no length it begins with none.
     pub(super) fn go_on(path: &Path, length: u64, style: &Style) -> Result<Self> {
-        let file = File::options().read(true).write(true).create(true).truncate(false).open(path);
+        #[cfg(not(target_arch = "wasm32"))]
+        let file =
+            DraftFile::options().read(true).write(true).create(true).truncate(false).open(path);
+        #[cfg(target_arch = "wasm32")]
+        let file = nameless_file(path);
         let mut states = Self::of(path, file.map_err(|error| Error::file(path, error))?);
         while states.end() < length {
             let WaitingState { snapshot, .. } = states.read()?;
@@ -82,7 +86,7 @@ impl WaitingStates {
         Ok(states)
     }
 
-    fn of(path: &Path, file: File) -> Self {
+    fn of(path: &Path, file: DraftFile) -> Self {
         Self { path: path.to_owned(), file, places: vec![0], range: None, force_reference: 0.0 }
     }
 

@@ -1,6 +1,8 @@
 //! Simulated time against the time on the wall.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::Pace;
 

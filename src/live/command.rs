@@ -5,25 +5,40 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{RunHistory, WorldHistory};
+use super::{RunHistory, WorldHistory, source_to_bytes};
+use crate::config::Config;
 use crate::error::Result;
+use crate::scene::Scene;
 use crate::sim::{Edit, Pull, Settings, Simulation, Snapshot, Tally};
 use crate::world::{Boundary, Physics};
 
-/// Makes a start. It runs on the solver's thread, tells of its progress, and gives up with an error
-/// where the callback returns false.
-pub type Loader =
-    Box<dyn FnOnce(&mut dyn FnMut(LoadingProgress) -> bool) -> Result<LiveStart> + Send>;
+/// Hears how far a start has come. False where it is given up.
+pub type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
 
-/// Takes down what a world has come to. It runs on the solver's thread, so it hands on what it gets and
+/// What makes a start, as data, so that it can be sent to where the run is computed.
+pub trait StartSource: Send + 'static {
+    /// Makes it where the run is computed. Gives up with an error where `tell` returns false.
+    ///
+    /// # Errors
+    /// Says why there is none.
+    fn make(self: Box<Self>, tell: Tell<'_>) -> Result<LiveStart>;
+
+    /// It as bytes, from which its kind reads it back.
+    ///
+    /// # Errors
+    /// Where it cannot be sent.
+    fn to_bytes(&self) -> Result<Vec<u8>>;
+}
+
+/// Takes down what a world has come to, with the start. It runs on the solver's thread, so it hands on what it gets and
 /// does not work with it.
-pub type Taker = Box<dyn FnOnce(WorldHistory) + Send>;
+pub type Taker = Box<dyn FnOnce(Arc<LiveStart>, WorldHistory) + Send>;
 
 /// Takes down the start with all that has come of it. It runs on the solver's thread, as a [`Taker`] does.
 pub type StartTaker = Box<dyn FnOnce(LiveStart) + Send>;
 
 /// Simulated time per time on the wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Pace {
     /// This many simulated seconds a second, or as many as the machine computes.
     RealTime(f64),
@@ -32,9 +47,11 @@ pub enum Pace {
 }
 
 /// What can be asked of a live run. World indices that do not exist are ignored.
+#[derive(Serialize, Deserialize)]
 pub enum Command {
     /// Replace everything by a new start, with one world.
-    Load(Loader),
+    #[serde(skip)]
+    Load(Box<dyn StartSource>),
     /// Give up the loading that is going on.
     CancelLoading,
     /// Run worlds with these settings side by side from the present start; one is the ordinary case. The
@@ -62,8 +79,10 @@ pub enum Command {
     /// Go to the recorded moment nearest to this simulated time, s; pauses.
     Seek(f64),
     /// Hand out what a world has come to.
+    #[serde(skip)]
     Take(usize, Taker),
     /// Hand out the start, with the history of all worlds and of the runs before.
+    #[serde(skip)]
     TakeAll(StartTaker),
     /// Change the pace.
     SetPace(Pace),
@@ -95,14 +114,17 @@ impl Command {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LiveStart {
-    /// Name of the scene.
-    pub name: String,
+    /// The scene, before anything moves. The run pauses once at its duration; played on, it goes further.
+    pub scene: Scene,
+    /// What opens that scene again.
+    #[serde(with = "as_json")]
+    pub config: Config,
+    /// How the window was arranged that saved it, in that window's own words; none where none did.
+    pub window: Option<String>,
     /// The world at t = 0, or where a saved run goes on.
     pub simulation: Simulation,
     /// Sums over the steps before that.
     pub tally: Tally,
-    /// The run pauses here once, s; played on, it goes further.
-    pub duration_secs: f64,
     /// Shapes that are drawn before the first step: what holds a state that is at rest.
     pub held_by: Vec<Boundary>,
     /// Lower left and upper right corner of what pictures show, m.
@@ -128,8 +150,40 @@ impl LiveStart {
     }
 }
 
+/// One that is ready.
+impl StartSource for LiveStart {
+    fn make(self: Box<Self>, _: Tell<'_>) -> Result<LiveStart> {
+        Ok(*self)
+    }
+
+    fn to_bytes(&self) -> Result<Vec<u8>> {
+        source_to_bytes(self)
+    }
+}
+
+/// A config reads its options by name, which binary forms do not have.
+pub(crate) mod as_json {
+    use serde::de::Error as _;
+    use serde::ser::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use crate::config::Config;
+
+    pub(crate) fn serialize<S: Serializer>(config: &Config, to: S) -> Result<S::Ok, S::Error> {
+        serde_json::to_string(config).map_err(S::Error::custom)?.serialize(to)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>, C: From<Config>>(
+        from: D,
+    ) -> Result<C, D::Error> {
+        let config: Config =
+            serde_json::from_str(&String::deserialize(from)?).map_err(D::Error::custom)?;
+        Ok(config.into())
+    }
+}
+
 /// How far a long preparation has come.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadingProgress {
     /// 0 … 1.
     pub part: f32,
@@ -140,7 +194,7 @@ pub struct LoadingProgress {
 }
 
 /// What is being made, at one moment. It is shown, and no more: the worlds stay as they are.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preview {
     /// The moment.
     pub snapshot: Arc<Snapshot>,

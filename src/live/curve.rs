@@ -81,10 +81,43 @@ impl Curve {
     }
 
     fn keep(&mut self, kept: impl Fn(&Observables) -> bool) {
-        let rows: Vec<Observables> = self.rows().filter(|row| kept(row)).copied().collect();
+        self.set(self.rows().filter(|row| kept(row)).copied().collect());
+    }
+
+    fn set(&mut self, rows: Vec<Observables>) {
         let full = rows.len() / CHUNK * CHUNK;
         self.chunks = rows[..full].chunks(CHUNK).map(|rows| Arc::new(rows.to_vec())).collect();
         self.tail = rows[full..].to_vec();
+    }
+}
+
+/// What a curve has that one before had not.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct CurveChange {
+    /// Rows that both begin with.
+    kept: usize,
+    rows: Vec<Observables>,
+    stride: u64,
+}
+
+impl CurveChange {
+    pub(super) fn between(before: &Curve, curve: &Curve) -> Self {
+        let shared = before.chunks.iter().zip(&curve.chunks);
+        let chunks = shared.take_while(|(old, new)| Arc::ptr_eq(old, new)).count();
+        let rest = before.rows().skip(chunks * CHUNK).zip(curve.rows().skip(chunks * CHUNK));
+        let kept = chunks * CHUNK + rest.take_while(|(old, new)| old == new).count();
+        let rows = curve.rows().skip(kept).copied().collect();
+        Self { kept, rows, stride: curve.stride }
+    }
+
+    pub(super) fn after(self, mut before: Curve) -> Curve {
+        let Self { kept, rows, stride } = self;
+        if before.len() == kept && before.tail.len() + rows.len() < CHUNK {
+            before.tail.extend(rows);
+        } else {
+            before.set(before.rows().take(kept).copied().chain(rows).collect());
+        }
+        Curve { stride, ..before }
     }
 }
 

@@ -2,14 +2,15 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
+use std::time::Duration;
 
 use triple_buffer::Input;
+use web_time::Instant;
 
 use super::clock::Clock;
 use super::{
-    Command, LiveFrame, LiveOptions, LiveStart, Loader, LoadingProgress, Pace, RunHistory,
+    Command, LiveFrame, LiveOptions, LiveStart, LoadingProgress, Pace, RunHistory, StartSource,
     WorldFrame,
 };
 use crate::error::Error;
@@ -92,6 +93,20 @@ pub(super) struct Engine {
     quit: bool,
 }
 
+/// What comes within a time; of none, without asking for a clock, which a page has not.
+pub(crate) fn receive_within<T>(
+    inbox: &Receiver<T>,
+    wait: Duration,
+) -> std::result::Result<T, RecvTimeoutError> {
+    if !wait.is_zero() {
+        return inbox.recv_timeout(wait);
+    }
+    inbox.try_recv().map_err(|error| match error {
+        TryRecvError::Empty => RecvTimeoutError::Timeout,
+        TryRecvError::Disconnected => RecvTimeoutError::Disconnected,
+    })
+}
+
 fn message(error: Error) -> Arc<str> {
     error.to_string().into()
 }
@@ -130,27 +145,32 @@ impl Engine {
     }
 
     pub(super) fn run(mut self) {
-        while !self.quit {
-            if !self.receive() {
-                return;
-            }
-            match self.mode {
-                Mode::Seeking { .. } => self.advance_seek(),
-                Mode::Showing { .. } => self.advance_show(),
-                Mode::Computing => self.advance_run(),
-                Mode::Paused | Mode::Loading(_) => {}
-            }
-            let is_due = self.outbox.is_urgent || self.outbox.wait().is_zero();
-            if self.outbox.is_behind && is_due {
-                self.outbox.is_urgent = false;
-                self.publish();
-            }
+        while !self.quit && self.turn(true) {}
+    }
+
+    /// Takes in all commands and does what is due; where that is nothing and it may, it sleeps until there is something.
+    /// Whether there is anyone left to send commands.
+    pub(super) fn turn(&mut self, may_sleep: bool) -> bool {
+        if !self.receive(may_sleep) {
+            return false;
         }
+        match self.mode {
+            Mode::Seeking { .. } => self.advance_seek(),
+            Mode::Showing { .. } => self.advance_show(),
+            Mode::Computing => self.advance_run(),
+            Mode::Paused | Mode::Loading(_) => {}
+        }
+        let is_due = self.outbox.is_urgent || self.outbox.wait().is_zero();
+        if self.outbox.is_behind && is_due {
+            self.outbox.is_urgent = false;
+            self.publish();
+        }
+        true
     }
 
     /// Takes in all commands; sleeps for one where nothing else is to be done. Whether there is
     /// anyone left to send any.
-    fn receive(&mut self) -> bool {
+    fn receive(&mut self, may_sleep: bool) -> bool {
         let mut commanded = false;
         loop {
             if !self.mode.seeks()
@@ -160,10 +180,11 @@ impl Engine {
                 commanded = true;
                 continue;
             }
-            let wait = if commanded || self.quit { Some(Duration::ZERO) } else { self.wait() };
+            let hurries = commanded || self.quit || !may_sleep;
+            let wait = if hurries { Some(Duration::ZERO) } else { self.wait() };
             let received = match wait {
                 None => self.inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-                Some(wait) => self.inbox.recv_timeout(wait),
+                Some(wait) => receive_within(&self.inbox, wait),
             };
             match received {
                 Ok((number, command)) if self.mode.seeks() && command.waits_for_seek() => {
@@ -186,7 +207,7 @@ impl Engine {
     }
 
     /// How long nothing is to be done; none where only a command changes that.
-    fn wait(&mut self) -> Option<Duration> {
+    pub(super) fn wait(&mut self) -> Option<Duration> {
         if self.mode.seeks() {
             return Some(Duration::ZERO);
         }
@@ -211,7 +232,7 @@ impl Engine {
             return;
         }
         match command {
-            Command::Load(loader) => self.load(loader),
+            Command::Load(source) => self.load(source),
             Command::Compare(all) => self.restart(&all),
             Command::Reset => self.restart(&self.history.present.settings()),
             Command::Return(number) => {
@@ -244,8 +265,10 @@ impl Engine {
             Command::SetPace(pace) => self.set_pace(pace),
             Command::Name(number, name) => self.history.name(number, name),
             Command::Take(world, taker) => {
-                if let Some(world) = self.history.present.worlds.get(world) {
-                    taker(world.handed_out());
+                if let (Some(world), Some(start)) =
+                    (self.history.present.worlds.get(world), &self.start)
+                {
+                    taker(Arc::clone(start), world.handed_out());
                 }
             }
             Command::TakeAll(taker) => {
@@ -281,7 +304,8 @@ impl Engine {
             return;
         }
         let now_secs = run.time_secs();
-        let duration_secs = self.start.as_ref().map_or(f64::INFINITY, |start| start.duration_secs);
+        let duration_secs =
+            self.start.as_ref().map_or(f64::INFINITY, |start| start.scene.duration_secs);
         let is_before_end = now_secs + 0.5 * run.time_step_secs() < duration_secs;
         self.stop_at_secs = is_before_end.then_some(duration_secs);
         self.clock.start(now_secs);
@@ -362,14 +386,14 @@ impl Engine {
         }
     }
 
-    /// Replaces everything by what `loader` makes, unless that fails or is given up.
-    fn load(&mut self, loader: Loader) {
+    /// Replaces everything by what `source` makes, unless that fails or is given up.
+    fn load(&mut self, source: Box<dyn StartSource>) {
         self.pause();
         self.refusal = None;
         let before = std::mem::replace(&mut self.mode, Mode::Loading(LoadingProgress::default()));
         self.publish();
         let mut cancelled = false;
-        let made = loader(&mut |progress| {
+        let made = source.make(&mut |progress| {
             self.mode = Mode::Loading(progress);
             if self.outbox.sent.elapsed() >= PROGRESS_INTERVAL {
                 self.publish();

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::stored_moments::StoredMoment;
 use super::{Controls, Curve, LiveStart, LoadingProgress, PastRun, WorldHistory};
@@ -11,7 +12,7 @@ use crate::solver::Method;
 use crate::world::Gravity;
 
 /// The newest moment of a live run.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveFrame {
     /// Counts frames.
     pub number: u64,
@@ -48,7 +49,7 @@ pub struct LiveFrame {
 }
 
 /// One world at one moment.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WorldFrame {
     /// The world. Before the first step, with the shapes that hold it.
     pub snapshot: Arc<Snapshot>,
@@ -89,7 +90,7 @@ pub struct WorldFrame {
 }
 
 /// Something that went wrong in a world.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorldAlarm {
     /// In which way.
     pub kind: AlarmKind,

@@ -1,11 +1,12 @@
 //! The side of a live run that a window holds.
 
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use triple_buffer::{Output, triple_buffer};
 
 use super::engine::Engine;
+use super::remote::RemoteRun;
 use super::{Command, LiveFrame};
 use crate::error::{Error, Result};
 
@@ -34,11 +35,18 @@ impl Default for LiveOptions {
     }
 }
 
-/// A run on a thread of its own. Dropped, it ends after the step that it is computing.
+/// A run that goes on by itself. Dropped, it ends after the step that it is computing.
 pub struct Live {
-    commands: Sender<(u64, Command)>,
-    frames: Output<LiveFrame>,
+    place: Place,
     sent: u64,
+}
+
+/// Where it is computed.
+enum Place {
+    /// By a thread of this process.
+    Thread { commands: Sender<(u64, Command)>, frames: Output<LiveFrame> },
+    /// By someone who takes bytes and answers in bytes.
+    Remote(Box<RemoteRun>),
 }
 
 impl Live {
@@ -55,15 +63,26 @@ impl Live {
             .stack_size(STACK_BYTES)
             .spawn(move || engine.run())
             .map_err(|error| Error::value("solver thread", error, "startable"))?;
-        Ok(Self { commands, frames, sent: 0 })
+        Ok(Self { place: Place::Thread { commands, frames }, sent: 0 })
+    }
+
+    /// A run that a [`RemoteEngine`](super::RemoteEngine) computes: `post` brings messages there, and what it posts comes
+    /// in by `inbox`.
+    pub fn remote(post: Box<dyn FnMut(Vec<u8>)>, inbox: Receiver<Vec<u8>>) -> Self {
+        Self { place: Place::Remote(Box::new(RemoteRun::new(post, inbox))), sent: 0 }
     }
 
     /// Sends a command and returns its number, which [`LiveFrame::acknowledged`] reaches once the
     /// command has been carried out (loading and seeking: once they have begun).
     pub fn send(&mut self, command: Command) -> u64 {
         self.sent += 1;
-        // The thread ends only with this handle; a panic there shows as a run that stands still.
-        let _ = self.commands.send((self.sent, command));
+        match &mut self.place {
+            // The thread ends only with this handle; a panic there shows as a run that stands still.
+            Place::Thread { commands, .. } => {
+                let _ = commands.send((self.sent, command));
+            }
+            Place::Remote(run) => run.send(self.sent, command),
+        }
         self.sent
     }
 
@@ -74,17 +93,15 @@ impl Live {
 
     /// The newest frame. Never waits.
     pub fn latest(&mut self) -> &LiveFrame {
-        self.frames.read()
-    }
-
-    /// True if there is a frame that [`Live::latest`] has not returned yet.
-    pub fn has_news(&self) -> bool {
-        self.frames.updated()
+        match &mut self.place {
+            Place::Thread { frames, .. } => frames.read(),
+            Place::Remote(run) => run.latest(),
+        }
     }
 }
 
 impl Drop for Live {
     fn drop(&mut self) {
-        let _ = self.commands.send((self.sent + 1, Command::Quit));
+        self.send(Command::Quit);
     }
 }

@@ -136,7 +136,7 @@ impl LiveRun {
 }
 
 /// What a window is told of an earlier run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PastRun {
     /// What it is called up by ([`Command::Return`](super::Command::Return)).
     pub number: u64,
@@ -149,7 +149,7 @@ pub struct PastRun {
 }
 
 /// One world of an earlier run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PastWorld {
     /// How its last step was taken.
     pub controls: Controls,

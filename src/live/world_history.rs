@@ -1,9 +1,9 @@
 //! One world of a live run: where it is, what is recorded of it, and its curve.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
+use web_time::Instant;
 
 use super::stored_moments::StoredMoments;
 use super::{Curve, WorldRecord};

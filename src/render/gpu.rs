@@ -23,7 +23,7 @@ pub(crate) struct Gpu {
 
 impl Gpu {
     /// Opens a GPU of either kind.
-    #[cfg(feature = "window")]
+    #[cfg(feature = "panels")]
     pub(crate) fn any() -> Result<Self> {
         Self::open(GpuKind::Vulkan).or_else(|_| Self::open(GpuKind::Gl))
     }

@@ -37,7 +37,7 @@ pub use renderer::{Renderer, RendererChoice, quieten_drivers};
 pub use scene::{WorldPanel, draw_scene, draw_worlds, panel_size};
 pub(crate) use style::Palette;
 pub use style::{ColourBy, Style, Theme};
-#[cfg(feature = "window")]
+#[cfg(feature = "panels")]
 pub(crate) use {
     gpu::Gpu,
     legend::{Legend, ScaleBar},

@@ -102,6 +102,8 @@ impl Renderer {
             RendererChoice::Vulkan => Backend::open(GpuKind::Vulkan)?,
             RendererChoice::Gl => Backend::open(GpuKind::Gl)?,
             RendererChoice::Cpu => Backend::Cpu,
+            // A page must not wait for a device.
+            RendererChoice::Auto if cfg!(target_arch = "wasm32") => Backend::Cpu,
             RendererChoice::Auto => Backend::open(GpuKind::Vulkan)
                 .or_else(|_| Backend::open(GpuKind::Gl))
                 .unwrap_or(Backend::Cpu),

@@ -20,6 +20,7 @@ mod pictures;
 mod provenance;
 mod recording;
 mod recordings;
+mod remote;
 mod robot;
 mod sessions;
 mod videos;

@@ -122,18 +122,17 @@ fn little_memory_is_enough_to_get_anywhere() {
     }
     let options = LiveOptions { recording_bytes: 300_000, ..LiveOptions::default() };
     let mut live = Live::spawn(options).unwrap();
-    live.send(Command::Load(Box::new(move |_| {
-        Ok(LiveStart {
-            name: "pile".into(),
-            simulation,
-            tally: Tally::default(),
-            duration_secs: 1.0,
-            held_by: Vec::new(),
-            view: [DVec2::ZERO, DVec2::ONE],
-            slumps: true,
-            worlds: Vec::new(),
-            history: None,
-        })
+    live.send(Command::Load(Box::new(LiveStart {
+        scene,
+        config: Config::of_scene("pile"),
+        window: None,
+        simulation,
+        tally: Tally::default(),
+        held_by: Vec::new(),
+        view: [DVec2::ZERO, DVec2::ONE],
+        slumps: true,
+        worlds: Vec::new(),
+        history: None,
     })));
     for _ in 0..200 {
         live.send(Command::Step);

@@ -1,10 +1,10 @@
 //! Files that anyone may have made: plain files alone, and no more of them than can be meant.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::output::DraftFile;
 
 /// Bytes of the largest page of a table.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
@@ -17,13 +17,21 @@ const MOST_OF_LINE: usize = 1 << 20;
 ///
 /// # Errors
 /// Names the file and what the system says, or that it is no plain file.
-pub(crate) fn open(path: &Path, form: &str) -> Result<File> {
+pub(crate) fn open(path: &Path, form: &str) -> Result<DraftFile> {
     let refuse = |said: &dyn std::fmt::Display| Error::unread(path, said, form);
+    #[cfg(target_arch = "wasm32")]
+    return crate::output::given_file(path).map_err(|error| refuse(&error));
+    #[cfg(not(target_arch = "wasm32"))]
+    open_plain(path, &refuse)
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn open_plain(path: &Path, refuse: &dyn Fn(&dyn std::fmt::Display) -> Error) -> Result<DraftFile> {
     let there = std::fs::metadata(path).map_err(|error| refuse(&error))?;
     if !there.is_file() && !there.is_dir() {
         return Err(refuse(&"is a device or a pipe"));
     }
-    File::open(path).map_err(|error| refuse(&error))
+    DraftFile::open(path).map_err(|error| refuse(&error))
 }
 
 /// Reads a text that must be `form`.

@@ -1,6 +1,10 @@
 //! What Slump's runs leave behind: what is measured of grains and piles, recordings in files that other programs
 //! read, problem files, and what a user asks of a run.
 
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(dead_code, unused_imports, reason = "a page has no files")
+)]
 #![warn(missing_docs, unreachable_pub)]
 // They panic where a stream is closed or full: `output` has lines that do not.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]

@@ -10,9 +10,9 @@ use std::sync::Arc;
 mod pool;
 mod runs;
 
-use super::opening::Opened;
 use super::preferences::user_folder;
 use super::state::AppState;
+use crate::live::LiveStart;
 use crate::scene::NewPile;
 use crate::sim::Settings;
 pub(super) use pool::on_idle_cores;
@@ -32,7 +32,7 @@ pub struct Ensemble {
     /// Where their initial states are kept; none where there is no such place.
     folder: Option<PathBuf>,
     /// What is open, and which its other piles are.
-    opened: Option<Arc<Opened>>,
+    opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
     worlds: Vec<Option<Settings>>,
@@ -89,8 +89,8 @@ impl Ensemble {
 impl AppState {
     /// Has the other piles follow the worlds that there are.
     pub(crate) fn follow_ensemble(&mut self, context: &egui::Context) {
-        let (ensemble, opened) = (&mut self.ensemble, self.opening.last.get());
-        let address = |opened: &Option<Arc<Opened>>| opened.as_ref().map(Arc::as_ptr);
+        let (ensemble, opened) = (&mut self.ensemble, self.frame.start.clone());
+        let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&ensemble.opened) != address(&opened) {
             ensemble.stop();
             ensemble.piles = opened.as_ref().map_or_else(Vec::new, |opened| others_of(opened));

@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::runs::{Band, SlumpSeries, scene_of, slump};
-use crate::app::opening::{Opened, settled_part};
+use crate::app::opening::settled_part;
 use crate::error::{Error, Result};
+use crate::live::LiveStart;
 use crate::output::check_writable;
 use crate::scene::{NewPile, Settling};
 use crate::sim::Settings;
@@ -137,7 +140,7 @@ impl Jobs {
 
 /// What the threads and the window share.
 struct PoolState {
-    opened: Arc<Opened>,
+    opened: Arc<LiveStart>,
     piles: Vec<NewPile>,
     folder: PathBuf,
     context: egui::Context,
@@ -158,7 +161,7 @@ impl WorkerPool {
     pub(super) fn start(
         folder: &Path,
         context: &egui::Context,
-        opened: &Arc<Opened>,
+        opened: &Arc<LiveStart>,
         piles: &[NewPile],
     ) -> Self {
         let state = Arc::new(PoolState {

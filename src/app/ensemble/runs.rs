@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use crate::app::opening::Opened;
 use crate::config::Config;
 use crate::error::Result;
+use crate::live::LiveStart;
 use crate::scene::{NewPile, Scene, built_in};
 use crate::sim::{RunEnding, Settings, Simulation};
 use crate::study;
@@ -87,7 +87,7 @@ const MOST_GRAINS: usize = 1_000;
 
 /// The other piles of what is open, with seeds from 1 on but for its own and that of the shipped state; none where
 /// it is no pile that was made from a seed, or a large one.
-pub(super) fn others_of(opened: &Opened) -> Vec<NewPile> {
+pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
     let Some(own) = pile_of(opened).filter(|pile| pile.grains <= MOST_GRAINS) else {
         return Vec::new();
     };
@@ -97,8 +97,8 @@ pub(super) fn others_of(opened: &Opened) -> Vec<NewPile> {
 }
 
 /// What the grains of a scene were made of.
-fn pile_of(opened: &Opened) -> Option<NewPile> {
-    let Opened { config, scene, .. } = opened;
+fn pile_of(opened: &LiveStart) -> Option<NewPile> {
+    let LiveStart { config, scene, .. } = opened;
     if config.source.initial.is_some() {
         return None;
     }
@@ -115,7 +115,7 @@ fn pile_of(opened: &Opened) -> Option<NewPile> {
 
 /// The scene that is open, with other grains and these settings.
 pub(super) fn scene_of(
-    opened: &Opened,
+    opened: &LiveStart,
     pile: &NewPile,
     grains: Vec<Grain>,
     settings: &Settings,
@@ -131,6 +131,7 @@ pub(super) fn scene_of(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::opening::start;
 
     fn run(slumps: [f64; 3]) -> SlumpSeries {
         [0.0, 0.5, 1.0].into_iter().zip(slumps).map(|(time, slump)| [time, slump]).collect()
@@ -156,8 +157,8 @@ mod tests {
         assert_eq!(Band::of(&[]).at(0.0), None);
     }
 
-    fn opened(config: Config) -> Opened {
-        Opened::new(config.without_settling().unwrap(), config)
+    fn opened(config: Config) -> LiveStart {
+        start(&config.without_settling().unwrap(), config).unwrap()
     }
 
     fn seeds(config: Config) -> Vec<u64> {

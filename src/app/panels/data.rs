@@ -3,6 +3,7 @@
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 
 use super::grain::compact;
+use crate::app::IS_PAGE;
 use crate::app::data_export::{DataChoices, DataOrder};
 use crate::app::state::AppState;
 use crate::app::work::{Reporter, Work};
@@ -14,6 +15,12 @@ const EVERY: [f64; 2] = [1e-9, 1e9];
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, state));
+    if IS_PAGE {
+        let text = "Files are downloads. A saved run, a session or a scene opens where it is dropped on the page.";
+        ui.label(RichText::new(text).weak());
+        return;
+    }
+    ui.add_enabled_ui(is_ready, |ui| open(ui, state));
     ui.separator();
     ui.add_enabled_ui(is_ready && state.exports.data.export.is_none(), |ui| order(ui, state));
     export(ui, state, is_ready);
@@ -40,6 +47,10 @@ fn saved_runs(ui: &mut Ui, state: &mut AppState) {
             state.save_session(ui.ctx());
         }
     });
+}
+
+/// The field for a file that is opened.
+fn open(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
         let label = ui.label("Saved").on_hover_text(hint);
@@ -171,7 +182,7 @@ fn export(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
         stretch: state.exports.data.stretch,
     };
     let run = state.take_run(state.selected);
-    let write = move |reporter: &Reporter| order.write(&run, reporter);
+    let write = move |mut runs: Vec<_>, reporter: &Reporter| order.write(runs.pop(), reporter);
     state.exports.data.told = None;
-    state.exports.data.export = Some(Work::start(ui.ctx(), write));
+    state.exports.data.export = Some(Work::start(ui.ctx(), vec![run], write));
 }

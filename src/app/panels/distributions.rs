@@ -1,15 +1,17 @@
 //! Panel: how forces, directions, contacts and overlaps are distributed at the moment that is shown, counted on a thread
 //! of its own.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::{RichText, Ui};
 use egui_plot::{Bar, BarChart};
+use web_time::Instant;
 
+use crate::app::opening::TakenRun;
 use crate::app::plots::bare_plot;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::app::work::{Work, received};
+use crate::app::work::Work;
 use crate::granular::{Histogram, histograms};
 
 /// Least time between two moments that are counted.
@@ -80,9 +82,11 @@ fn count(ui: &Ui, state: &mut AppState) {
     let is_due = counted.coming.is_none() && has_rested && counted.of != of;
     if is_due && !state.frame.seeking {
         let run = state.take_run(state.selected);
-        let count = move |_: &_| Ok(histograms(&received(&run)?.world.simulation.moment()));
+        let count = move |mut runs: Vec<TakenRun>, _: &_| {
+            Ok(runs.pop().map_or_else(Vec::new, |run| histograms(&run.world.simulation.moment())))
+        };
         let counted = &mut state.distributions;
-        counted.coming = Some(Work::start(ui.ctx(), count));
+        counted.coming = Some(Work::start(ui.ctx(), vec![run], count));
         (counted.of, counted.asked) = (of, Some(Instant::now()));
     } else if state.frame.playing || state.distributions.coming.is_some() {
         ui.ctx().request_repaint_after_secs(0.1);

@@ -117,7 +117,7 @@ pub(crate) fn change_pace(state: &mut AppState, is_faster: bool) {
 fn timeline(ui: &mut Ui, state: &mut AppState) {
     let end = state.frame.recorded_secs();
     let now = state.frame.time_secs();
-    let duration = state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs);
+    let duration = state.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs);
     let label = format!("{} / {} s", compact(now), compact(end));
     let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
     ui.with_layout(from_the_right, |ui| {

@@ -22,6 +22,7 @@ pub(super) mod trust;
 use egui::{CollapsingHeader, RichText, Ui};
 use serde::{Deserialize, Serialize};
 
+use super::IS_PAGE;
 use super::state::AppState;
 
 pub use front::FRONT_SETTINGS;
@@ -74,7 +75,10 @@ impl Page {
                 physics::show(ui, state);
                 ui.separator();
                 solver::show(ui, state);
-                folded(ui, state, "Speed and accuracy", speed::show);
+                // It would keep a page waiting for seconds.
+                if !IS_PAGE {
+                    folded(ui, state, "Speed and accuracy", speed::show);
+                }
             }
             Self::Compare => {
                 compare::show(ui, state);
@@ -85,7 +89,9 @@ impl Page {
             }
             Self::Look => see::look(ui, state),
             Self::Save => {
-                see::folder(ui, state);
+                if !IS_PAGE {
+                    see::folder(ui, state);
+                }
                 see::pictures(ui, state);
                 ui.separator();
                 data::show(ui, state);

@@ -2,6 +2,7 @@
 
 use egui::{RichText, Ui};
 
+use crate::app::IS_PAGE;
 use crate::app::export::{free_path, write_table};
 use crate::app::plots::{PlotData, WorldCurve, draw};
 use crate::app::state::AppState;
@@ -35,7 +36,7 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
         quantities: QUANTITIES.iter().filter(|quantity| is_shown(state, quantity)).collect(),
         chosen: state.preferences.chosen_plot.clone(),
         now_secs: state.frame.time_secs(),
-        until_secs: state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs),
+        until_secs: state.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs),
     }
 }
 
@@ -102,7 +103,9 @@ pub(super) fn choices(ui: &mut Ui, state: &mut AppState) {
 /// What saves the plots, and how they were thinned.
 fn files(ui: &mut Ui, state: &mut AppState) {
     let stem = format!("{}-curves", super::see::file_stem(state));
-    if ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked() {
+    // A page must not wait for a device that draws.
+    if !IS_PAGE && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
+    {
         let data = data(ui, state);
         let size = state.preferences.picture_size;
         let (dark, texts) = (ui.visuals().dark_mode, state.texts(false));

@@ -69,7 +69,8 @@ pub(super) fn command_line(ui: &mut Ui, state: &mut AppState) {
 }
 
 fn scene_box(ui: &mut Ui, state: &mut AppState) {
-    let current = state.frame.start.as_ref().map_or("", |start| start.name.as_str()).to_owned();
+    let current =
+        state.frame.start.as_ref().map_or("", |start| start.scene.name.as_str()).to_owned();
     ui.horizontal(|ui| {
         let label = ui.label("Scene").on_hover_text(
             "Drop a TOML scene, a CSV of discs or a saved run on the window to open it.",

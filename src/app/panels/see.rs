@@ -6,6 +6,7 @@ use egui::{ComboBox, RichText, ThemePreference, Ui};
 use glam::DVec2;
 
 use super::scene::{columns, shared_style, view};
+use crate::app::IS_PAGE;
 use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
@@ -106,10 +107,13 @@ fn films(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         let video_hint = "What was recorded of all worlds, or the stretch that is named below, as MP4. The run may go on meanwhile.";
         let gif_hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and larger files.";
-        for (format, name, missing, hint) in [
-            (FilmFormat::Video, "Save video", check_ffmpeg("given").err(), video_hint),
+        let missing = check_ffmpeg("given").err();
+        let formats = [
+            (FilmFormat::Video, "Save video", missing, video_hint),
             (FilmFormat::Gif, "Save GIF", None, gif_hint),
-        ] {
+        ];
+        // A page has no ffmpeg.
+        for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IS_PAGE)) {
             let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
             let save = ui.add_enabled(is_ready && missing.is_none(), egui::Button::new(name));
             state.note_control(name, save.rect);
@@ -180,7 +184,7 @@ fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) 
     };
     let worlds = 0..state.frame.worlds.len();
     let runs: Vec<_> = worlds.map(|world| state.take_run(world)).collect();
-    let work = Work::start(context, move |reporter| order.make(&runs, reporter));
+    let work = Work::start(context, runs, move |runs, reporter| order.make(&runs, reporter));
     state.exports.film = Some((format, work));
 }
 
@@ -216,7 +220,7 @@ fn scene_picture(
 
 /// How the names of saved files begin.
 pub(crate) fn file_stem(state: &AppState) -> String {
-    let name = state.frame.start.as_ref().map_or("scene", |start| start.name.as_str());
+    let name = state.frame.start.as_ref().map_or("scene", |start| start.scene.name.as_str());
     let settings: Vec<_> = state.frame.worlds.iter().map(|world| world.controls.settings).collect();
     stem(name, &settings, state.frame.time_secs())
 }

@@ -1,11 +1,9 @@
 //! Panel: how long methods take to solve the step that is shown how well. Each solves it to one tolerance after the other,
 //! on a thread of its own.
 
-use std::sync::mpsc::Receiver;
-use std::time::Instant;
-
 use egui::{Color32, RichText, Ui};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
+use web_time::Instant;
 
 use crate::app::opening::TakenRun;
 use crate::app::plots::plot_with_axes;
@@ -42,8 +40,8 @@ pub(crate) struct StepRace {
 }
 
 /// Has all methods solve the step that follows the moment of a run that is on its way.
-fn race(run: &Receiver<TakenRun>, reporter: &Reporter) -> Result<Vec<RaceCurve>> {
-    let Some(run) = reporter.wait_for(run)? else { return Ok(Vec::new()) };
+fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Vec<RaceCurve>> {
+    let Some(run) = run else { return Ok(Vec::new()) };
     let mut curves = Vec::new();
     for (number, info) in METHODS.iter().enumerate() {
         let goes_on = || reporter.tell(number as f64 / METHODS.len() as f64).is_continue();
@@ -140,7 +138,8 @@ fn measure(ui: &mut Ui, state: &mut AppState) {
         button.on_hover_text(hint).on_disabled_hover_text("There is no method to measure.");
     if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
         let run = state.take_run(state.selected);
-        let work = Work::start(ui.ctx(), move |reporter| race(&run, reporter));
+        let work =
+            Work::start(ui.ctx(), vec![run], move |mut runs, reporter| race(runs.pop(), reporter));
         state.race = Some(StepRace { time_secs, curves: Vec::new(), work: Some(work) });
     }
 }

@@ -3,12 +3,13 @@
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
 
 use egui::{Align2, RichText, Ui};
+use web_time::Instant;
 
 use super::grain::compact;
 use super::status::alarms;
+use crate::app::IS_PAGE;
 use crate::app::budget::FAST;
 use crate::app::ensemble::on_idle_cores;
 use crate::app::state::AppState;
@@ -167,6 +168,11 @@ fn solved(world: &WorldFrame) -> Vec<String> {
 
 /// What the error budget says, or how far it is.
 fn budget(ui: &mut Ui, state: &mut AppState) {
+    if IS_PAGE {
+        let text = "A page has no idle cores: slump budget, with the command line of this run, computes its error budget.";
+        ui.label(RichText::new(text).weak());
+        return;
+    }
     let told = of_budget(state);
     let Some(budget) = &state.budget else {
         let text = "A run that went on from a file, or a scene that is no longer there, has no error budget.";
@@ -193,6 +199,9 @@ fn follow(ui: &Ui, state: &mut AppState) {
     {
         budget.work = None;
         budget.failure = outcome.err().map(|error| error.to_string());
+    }
+    if IS_PAGE {
+        return;
     }
     let line = state.command_line();
     if state.budget.as_ref().map(|budget| &budget.of) == line.as_ref() {
@@ -222,7 +231,7 @@ fn begin(ui: &Ui, state: &AppState, of: String, config: Config) -> RunBudget {
     let told: Arc<Mutex<Option<(Trust, String)>>> = Arc::default();
     let states = state.ensemble.folder();
     let to = Arc::clone(&told);
-    let work = Work::start(ui.ctx(), move |reporter| {
+    let work = Work::start(ui.ctx(), Vec::new(), move |_: Vec<()>, reporter| {
         let refuse = |error| Error::value("temporary folder", error, "one that can be made");
         let folder = tempfile::tempdir().map_err(refuse)?;
         let states: PathBuf = states.unwrap_or_else(|| folder.path().join("states"));

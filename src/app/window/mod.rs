@@ -1,6 +1,7 @@
 //! The window: winit's events, egui's input and output, and when to draw.
 
 mod export_state;
+mod keeping;
 mod start;
 mod surface;
 
@@ -13,7 +14,6 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use winit::window::{Window, WindowId};
 
 use super::painting::LegendCache;
-use super::preferences::{Keeper, forget, load};
 use super::state::AppState;
 use super::theme;
 use super::ui::ui;
@@ -23,6 +23,7 @@ use crate::headless::HeadlessOptions;
 use crate::live::{Live, LiveOptions};
 use crate::render::RendererChoice;
 use export_state::StateFile;
+use keeping::{Keeper, forget, load};
 pub(crate) use start::WindowOptions;
 use start::{attributes, first, no_display};
 use surface::{Drawn, WindowSurface};

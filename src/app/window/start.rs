@@ -7,6 +7,7 @@ use winit::event_loop::ActiveEventLoop;
 use winit::monitor::MonitorHandle;
 use winit::window::{Window, WindowAttributes};
 
+use crate::app::opening::Opening;
 use crate::app::preferences::Preferences;
 use crate::app::session::open_session;
 use crate::app::sharing::RunLink;
@@ -57,12 +58,12 @@ pub(super) fn first(
     }
     if let Some(path) = &options.session {
         let session = open_session(path)?;
-        return Ok(Box::new(move |state| state.load_session(move || Ok(session))));
+        return Ok(Box::new(move |state| state.open(Opening::Session(Box::new(session)))));
     }
     if let Some(text) = &options.open {
-        let link = RunLink::read(text)?;
-        link.check()?;
-        return Ok(Box::new(move |state| state.load_link(link)));
+        RunLink::read(text)?.check()?;
+        let text = text.clone();
+        return Ok(Box::new(move |state| state.open(Opening::Link(text))));
     }
     if let Some(path) = restart {
         let mut saved = SavedState::open(path)?;

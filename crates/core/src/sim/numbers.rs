@@ -1,6 +1,6 @@
 //! What the numbers of a simulation's settings come to in its world.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::most_contacts_joined;
 use crate::sim::Settings;
@@ -73,7 +73,7 @@ impl Simulation {
 /// q on a row: ½ where all contacts are updated at once, and half of that under mass splitting, which cuts discs with
 /// two contacts in two; 1 for sweeps in an order that stays the same, since a row has no loops (D. M. Young 1971: each
 /// sweep of Gauss–Seidel shrinks an error as two of Jacobi's do).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepElasticity {
     /// q: how far the velocities of a row diffuse in a sweep, d².
     pub diffusion: f64,

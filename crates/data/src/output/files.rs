@@ -9,6 +9,31 @@ use std::path::{Path, PathBuf};
 use super::terminal::note_line;
 use crate::error::{Error, Result, place};
 
+/// A file that has no name yet: on disk, or where there is none in memory.
+#[cfg(not(target_arch = "wasm32"))]
+pub type DraftFile = File;
+/// A file that has no name yet: on disk, or where there is none in memory.
+#[cfg(target_arch = "wasm32")]
+pub type DraftFile = super::memory::MemoryFile;
+
+/// A file without a name in a folder: it is gone with the process, however that ends.
+///
+/// # Errors
+/// Where the system makes none.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn nameless_file(folder: &Path) -> std::io::Result<DraftFile> {
+    tempfile::tempfile_in(folder)
+}
+
+/// A file without a name in a folder: it is gone with the process, however that ends.
+///
+/// # Errors
+/// None.
+#[cfg(target_arch = "wasm32")]
+pub fn nameless_file(_: &Path) -> std::io::Result<DraftFile> {
+    Ok(DraftFile::default())
+}
+
 /// Ending of the name that a file has until it is whole.
 const ENDING_OF_DRAFT: &str = ".part";
 /// Links that lead on to links; more than the system itself follows are a circle.
@@ -35,7 +60,7 @@ pub struct PendingFile {
     path: PathBuf,
     destination: Destination,
     /// In no folder until it is whole: it is gone with the process, however that ends.
-    file: File,
+    file: DraftFile,
 }
 
 impl PendingFile {
@@ -45,18 +70,14 @@ impl PendingFile {
     /// Names the file and what the system says.
     pub fn start(path: &Path) -> Result<Self> {
         let destination = Destination::of(path)?;
-        let file = if destination.is_special {
-            File::options().write(true).open(&destination.path)
-        } else {
-            tempfile::tempfile_in(folder_of(&destination.path))
-        };
-        let file =
-            file.map_err(|error| Error::file(path, format!("cannot be written ({error})")))?;
+        let file = destination
+            .draft()
+            .map_err(|error| Error::file(path, format!("cannot be written ({error})")))?;
         Ok(Self { path: path.to_owned(), destination, file })
     }
 
     /// What to write to.
-    pub fn file(&mut self) -> &mut File {
+    pub fn file(&mut self) -> &mut DraftFile {
         &mut self.file
     }
 
@@ -80,7 +101,15 @@ impl PendingFile {
         self.put(safe).map_err(|error| Error::file(&self.path, error))
     }
 
+    /// Has it fetched by whoever has a place for it.
+    #[cfg(target_arch = "wasm32")]
+    fn put(&mut self, _safe: bool) -> std::io::Result<()> {
+        super::memory::keep_written(&self.destination.path, &self.file);
+        Ok(())
+    }
+
     /// Copies it to a hidden name beside its destination, which it then takes in one go.
+    #[cfg(not(target_arch = "wasm32"))]
     fn put(&mut self, safe: bool) -> std::io::Result<()> {
         let Destination { path, permissions, .. } = &self.destination;
         let mut prefix = OsString::from(".");
@@ -139,6 +168,17 @@ impl Destination {
     }
 }
 
+impl Destination {
+    /// What is written to until it is whole; what is no plain file at once.
+    fn draft(&self) -> std::io::Result<DraftFile> {
+        #[cfg(not(target_arch = "wasm32"))]
+        if self.is_special {
+            return File::options().write(true).open(&self.path);
+        }
+        nameless_file(folder_of(&self.path))
+    }
+}
+
 /// Makes `folder` if it is not there and checks that files can be written in it. `field` is what asks for
 /// it, for messages.
 ///
@@ -173,8 +213,10 @@ pub fn check_file(field: &str, path: &Path) -> Result<()> {
 }
 
 fn try_to_write(folder: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    tempfile::tempfile_in(folder).map(drop)
+    if cfg!(not(target_arch = "wasm32")) {
+        std::fs::create_dir_all(folder)?;
+    }
+    nameless_file(folder).map(drop)
 }
 
 /// Writes a file in one go: a run that is stopped leaves no half file behind and destroys none.

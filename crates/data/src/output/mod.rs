@@ -3,15 +3,19 @@
 
 mod files;
 mod growing;
+#[cfg(any(target_arch = "wasm32", test))]
+mod memory;
 mod recognised;
 mod seal;
 mod terminal;
 
 pub use files::{
-    FolderLock, Locked, PendingFile, SharedFolder, Texts, check_file, check_writable, final_name,
-    folder_of, in_use, remove_if_there, write_file,
+    DraftFile, FolderLock, Locked, PendingFile, SharedFolder, Texts, check_file, check_writable,
+    final_name, folder_of, in_use, nameless_file, remove_if_there, write_file,
 };
 pub use growing::{GrowingFile, end_of_last};
+#[cfg(target_arch = "wasm32")]
+pub use memory::{give_file, given_file, written_files};
 pub use recognised::{check_recognised, is_recognised};
 pub use seal::Seal;
 pub use terminal::{

@@ -7,7 +7,6 @@ use image::RgbImage;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
-use plotters::style::register_font;
 
 use super::{Axis, Chart, INK, Layer, Look, MapCell, Point, Rgb, Sheet};
 use crate::error::{Error, Result};
@@ -117,7 +116,12 @@ fn failed(error: impl std::fmt::Display) -> Error {
 fn register_fonts() -> Result<()> {
     static DONE: OnceLock<bool> = OnceLock::new();
     let regular = include_bytes!("../../../../assets/fonts/DejaVuSansCondensed.ttf");
-    let done = DONE.get_or_init(|| register_font(FONT, FontStyle::Normal, regular).is_ok());
+    // A page has no charts: there words are those of the browser.
+    #[cfg(target_arch = "wasm32")]
+    let register = |_: &[u8]| false;
+    #[cfg(not(target_arch = "wasm32"))]
+    let register = |font| plotters::style::register_font(FONT, FontStyle::Normal, font).is_ok();
+    let done = DONE.get_or_init(|| register(regular));
     if *done { Ok(()) } else { Err(failed("its font is broken")) }
 }
 

@@ -151,7 +151,7 @@ impl StepperMemory {
 }
 
 /// The work that slowly parts two bonded grains of the mean mass m.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FractureWork {
     /// J.
     pub joules: f64,

@@ -1,0 +1,68 @@
+//! The laboratory in a page: what a browser has in place of window, files and threads.
+
+use std::path::PathBuf;
+
+use egui::Context;
+use egui_wgpu::CallbackResources;
+
+use super::opening::{Opening, opening_of, refused_file};
+use super::painting::TargetFormat;
+use super::preferences::{Preferences, StoredWindow};
+use super::sharing::{RunLink, set_link_start};
+use super::state::AppState;
+use super::{theme, told};
+use crate::live::{Live, LiveOptions, Post, RemoteEngine};
+use crate::output::give_file;
+pub use crate::output::written_files;
+
+/// What computes the runs of a page, in a worker of it. What it says goes to `post`.
+pub fn engine(post: Post) -> RemoteEngine<Opening> {
+    RemoteEngine::new(post, LiveOptions::default())
+}
+
+/// Tells callbacks what format they draw into.
+pub fn prepare(resources: &mut CallbackResources, format: wgpu::TextureFormat) {
+    resources.insert(TargetFormat(format));
+}
+
+/// The page at first: as it was `stored`, at what its `address` names, else at the lessons.
+pub fn begin(live: Live, stored: &str, address: &str, context: &Context) -> AppState {
+    let stored: StoredWindow = ron::from_str(stored).unwrap_or_default();
+    context.memory_mut(|memory| *memory = stored.layout);
+    theme::install(context);
+    let (start, query) = address.split_once('?').unwrap_or((address, ""));
+    set_link_start(format!("{start}?"));
+    let lesson = query.strip_prefix("lesson=").and_then(|number| number.parse::<usize>().ok());
+    let mut state = AppState::idle(live, stored.preferences);
+    match RunLink::read(address).and_then(|link| link.check()) {
+        _ if lesson.is_some() => state.visit(lesson.unwrap_or(1).saturating_sub(1)),
+        Ok(()) => state.open(Opening::Link(address.to_owned())),
+        Err(refusal) => {
+            if !query.is_empty() {
+                state.warn(refusal.to_string());
+            }
+            match state.preferences.lesson.on {
+                true => state.visit(state.preferences.lesson.at),
+                false => state.load(state.preferences.scene.clone()),
+            }
+        }
+    }
+    state
+}
+
+/// What is to be stored of a page.
+pub fn stored(preferences: &Preferences, context: &Context) -> String {
+    ron::to_string(&StoredWindow::of(preferences, context)).unwrap_or_default()
+}
+
+/// Opens a file that was dropped.
+pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
+    let Some(opening) = opening_of(&path) else { return state.warn(refused_file(&path)) };
+    give_file(path.clone(), bytes.clone());
+    state.open(Opening::With { path, bytes, opening: Box::new(opening) });
+}
+
+/// State of page and run as JSON, for tests.
+pub fn told(state: &AppState, size: [u32; 2], scale: f32) -> String {
+    told::told(state, size, scale, 1).to_string()
+}

@@ -1,0 +1,280 @@
+//! A live run that is computed where no memory is shared with its window, as in the worker of a page: both sides as
+//! they read and write bytes.
+//!
+//! Commands go there as they are; what makes a start goes as data, and who takes something down stays on this side until
+//! it comes. Frames come back, the newest alone: the next is made once this side has seen the last. Of what frames share
+//! with the one before, only what is new is sent.
+
+use std::collections::HashMap;
+use std::marker::PhantomData;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use triple_buffer::{Output, triple_buffer};
+use web_time::Instant;
+
+use super::curve::CurveChange;
+use super::engine::Engine;
+use super::{
+    Command, Curve, LiveFrame, LiveOptions, LiveStart, PastRun, StartSource, StartTaker, Taker,
+    WorldHistory,
+};
+use crate::error::{Error, Result};
+
+/// A frame that was not seen is followed by another after this time: while a start is made nothing is taken in.
+const UNSEEN_INTERVAL: Duration = Duration::from_millis(100);
+
+/// What a window says. Numbers are those of commands.
+#[derive(Serialize, Deserialize)]
+enum Request {
+    Command(u64, Command),
+    Load(u64, Vec<u8>),
+    Take(u64, usize),
+    TakeAll(u64),
+    /// The last frame has been seen.
+    Seen,
+}
+
+/// What comes back.
+#[derive(Serialize, Deserialize)]
+enum Reply {
+    Frame(Box<FrameChange>),
+    Taken(u64, Arc<LiveStart>, Box<WorldHistory>),
+    TakenAll(u64, Box<LiveStart>),
+}
+
+/// A frame, by what it has that the one before had not.
+#[derive(Serialize, Deserialize)]
+struct FrameChange {
+    /// Without what follows.
+    frame: LiveFrame,
+    start: Option<Arc<LiveStart>>,
+    past: Option<Arc<[PastRun]>>,
+    curves: Vec<CurveChange>,
+}
+
+impl FrameChange {
+    fn between(before: &LiveFrame, frame: &LiveFrame) -> Self {
+        let no_curve = Curve::default();
+        let mut sent = LiveFrame { start: None, past: Arc::new([]), ..frame.clone() };
+        let curves = sent.worlds.iter_mut().enumerate().map(|(index, world)| {
+            let old = before.worlds.get(index).map_or(&no_curve, |world| &world.curve);
+            CurveChange::between(old, &std::mem::take(&mut world.curve))
+        });
+        let curves = curves.collect();
+        let start = frame.start.clone().filter(|_| before.loads != frame.loads);
+        let past = (!Arc::ptr_eq(&before.past, &frame.past)).then(|| Arc::clone(&frame.past));
+        Self { frame: sent, start, past, curves }
+    }
+
+    fn after(self, mut before: LiveFrame) -> LiveFrame {
+        let Self { mut frame, start, past, curves } = self;
+        frame.start = start.or(before.start.take());
+        frame.past = past.unwrap_or_else(|| Arc::clone(&before.past));
+        let mut old = before.worlds.into_iter().map(|world| world.curve);
+        for (world, change) in frame.worlds.iter_mut().zip(curves) {
+            world.curve = change.after(old.next().unwrap_or_default());
+        }
+        frame
+    }
+}
+
+fn written(message: &impl Serialize) -> Result<Vec<u8>> {
+    rmp_serde::to_vec_named(message)
+        .map_err(|error| Error::value("message", error, "one that can be written"))
+}
+
+fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
+    rmp_serde::from_slice(bytes)
+        .map_err(|error| Error::value("message", error, "one of the same program"))
+}
+
+/// Who waits for what is taken down.
+enum Waiting {
+    World(Taker),
+    All(StartTaker),
+}
+
+/// The window's side.
+pub(super) struct RemoteRun {
+    post: Box<dyn FnMut(Vec<u8>)>,
+    inbox: Receiver<Vec<u8>>,
+    frame: LiveFrame,
+    waiting: HashMap<u64, Waiting>,
+}
+
+impl RemoteRun {
+    pub(super) fn new(post: Box<dyn FnMut(Vec<u8>)>, inbox: Receiver<Vec<u8>>) -> Self {
+        Self { post, inbox, frame: LiveFrame::default(), waiting: HashMap::new() }
+    }
+
+    pub(super) fn send(&mut self, number: u64, command: Command) {
+        let request = match command {
+            Command::Load(source) => match source.to_bytes() {
+                Ok(bytes) => Request::Load(number, bytes),
+                Err(refusal) => return self.refuse(refusal),
+            },
+            Command::Take(world, taker) => {
+                self.waiting.insert(number, Waiting::World(taker));
+                Request::Take(number, world)
+            }
+            Command::TakeAll(taker) => {
+                self.waiting.insert(number, Waiting::All(taker));
+                Request::TakeAll(number)
+            }
+            command => Request::Command(number, command),
+        };
+        self.post(&request);
+    }
+
+    pub(super) fn latest(&mut self) -> &LiveFrame {
+        while let Ok(bytes) = self.inbox.try_recv() {
+            match read(&bytes) {
+                Ok(Reply::Frame(change)) => {
+                    self.frame = change.after(std::mem::take(&mut self.frame));
+                    self.post(&Request::Seen);
+                }
+                Ok(Reply::Taken(number, start, world)) => {
+                    if let Some(Waiting::World(taker)) = self.waiting.remove(&number) {
+                        taker(start, *world);
+                    }
+                }
+                Ok(Reply::TakenAll(number, start)) => {
+                    if let Some(Waiting::All(taker)) = self.waiting.remove(&number) {
+                        taker(*start);
+                    }
+                }
+                Err(refusal) => self.refuse(refusal),
+            }
+        }
+        &self.frame
+    }
+
+    fn post(&mut self, request: &Request) {
+        match written(request) {
+            Ok(bytes) => (self.post)(bytes),
+            Err(refusal) => self.refuse(refusal),
+        }
+    }
+
+    fn refuse(&mut self, refusal: Error) {
+        self.frame.refusal = Some(refusal.to_string().into());
+    }
+}
+
+/// What brings bytes to the window. It is called by the engine itself while a start is made.
+pub type Post = Box<dyn FnMut(Vec<u8>) + Send>;
+
+/// Posts frames as they are due.
+struct FramePoster {
+    frames: Output<LiveFrame>,
+    /// What was posted last.
+    posted: LiveFrame,
+    posted_at: Instant,
+    is_seen: bool,
+    post: Post,
+}
+
+impl FramePoster {
+    fn post_if_due(&mut self) {
+        let is_due = self.is_seen || self.posted_at.elapsed() >= UNSEEN_INTERVAL;
+        if !is_due || !self.frames.updated() {
+            return;
+        }
+        let frame = self.frames.read();
+        let change = FrameChange::between(&self.posted, frame);
+        self.posted = frame.clone();
+        (self.posted_at, self.is_seen) = (Instant::now(), false);
+        self.reply(&Reply::Frame(Box::new(change)));
+    }
+
+    fn reply(&mut self, reply: &Reply) {
+        // Plain data: there is nothing in it that could not be written.
+        if let Ok(bytes) = written(reply) {
+            (self.post)(bytes);
+        }
+    }
+}
+
+/// The side that computes: an engine that never sleeps by itself. `S` makes its starts.
+pub struct RemoteEngine<S> {
+    engine: Engine,
+    commands: Sender<(u64, Command)>,
+    poster: Arc<Mutex<FramePoster>>,
+    sources: PhantomData<S>,
+}
+
+impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
+    /// One with nothing loaded, whose replies go to `post`; it wakes nobody else.
+    pub fn new(post: Post, options: LiveOptions) -> Self {
+        let (commands, inbox) = channel();
+        let (output, frames) = triple_buffer(&LiveFrame::default());
+        let poster = Arc::new(Mutex::new(FramePoster {
+            frames,
+            posted: LiveFrame::default(),
+            posted_at: Instant::now(),
+            is_seen: true,
+            post,
+        }));
+        let to = Arc::clone(&poster);
+        let wake = Box::new(move || lock(&to).post_if_due());
+        let engine = Engine::new(inbox, output, LiveOptions { wake, ..options });
+        Self { engine, commands, poster, sources: PhantomData }
+    }
+
+    /// Takes in a message of the window.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn receive(&mut self, message: &[u8]) -> Result<()> {
+        let poster = Arc::clone(&self.poster);
+        let (number, command) = match read(message)? {
+            Request::Command(number, command) => (number, command),
+            Request::Load(number, bytes) => {
+                let source: S = read(&bytes)?;
+                (number, Command::Load(Box::new(source)))
+            }
+            Request::Take(number, world) => {
+                let hand_on = move |start, world| {
+                    lock(&poster).reply(&Reply::Taken(number, start, Box::new(world)));
+                };
+                (number, Command::Take(world, Box::new(hand_on)))
+            }
+            Request::TakeAll(number) => {
+                let hand_on =
+                    move |start| lock(&poster).reply(&Reply::TakenAll(number, Box::new(start)));
+                (number, Command::TakeAll(Box::new(hand_on)))
+            }
+            Request::Seen => {
+                let mut poster = lock(&poster);
+                poster.is_seen = true;
+                poster.post_if_due();
+                return Ok(());
+            }
+        };
+        // The engine has the other end.
+        let _ = self.commands.send((number, command));
+        Ok(())
+    }
+
+    /// Does what is due. Returns how long nothing will be, and nothing where only a message changes that.
+    pub fn turn(&mut self) -> Option<Duration> {
+        self.engine.turn(false);
+        self.engine.wait()
+    }
+}
+
+fn lock(poster: &Mutex<FramePoster>) -> std::sync::MutexGuard<'_, FramePoster> {
+    poster.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A source of starts as bytes.
+///
+/// # Errors
+/// Where it holds what cannot be written.
+pub fn source_to_bytes(source: &impl Serialize) -> Result<Vec<u8>> {
+    written(source)
+}

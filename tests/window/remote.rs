@@ -1,0 +1,185 @@
+//! A run that is computed where no memory is shared, by bytes alone, is the run of a thread.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use slump::config::Config;
+use slump::live::{
+    Command, Curve, Live, LiveFrame, LiveOptions, LiveStart, RemoteEngine, StartSource,
+    WorldHistory,
+};
+use slump::sim::Settings;
+
+/// Both sides, with what is on its way between them.
+struct Remote {
+    live: Live,
+    engine: RemoteEngine<LiveStart>,
+    requests: Receiver<Vec<u8>>,
+    replies: Receiver<Vec<u8>>,
+    to_window: Sender<Vec<u8>>,
+    bytes: usize,
+}
+
+impl Remote {
+    fn new() -> Self {
+        let (post_request, requests) = channel();
+        let (post_reply, replies) = channel();
+        let (to_window, inbox) = channel();
+        let post = Box::new(move |bytes| post_request.send(bytes).expect("a reader"));
+        let reply = Box::new(move |bytes| post_reply.send(bytes).expect("a reader"));
+        let live = Live::remote(post, inbox);
+        let engine = RemoteEngine::new(reply, LiveOptions::default());
+        Self { live, engine, requests, replies, to_window, bytes: 0 }
+    }
+
+    /// Lets both work until a frame is as wanted.
+    fn until(&mut self, wanted: impl Fn(&LiveFrame) -> bool) -> LiveFrame {
+        let begun = std::time::Instant::now();
+        loop {
+            for message in self.requests.try_iter() {
+                self.engine.receive(&message).expect("a message");
+            }
+            self.engine.turn();
+            for reply in self.replies.try_iter() {
+                self.bytes += reply.len();
+                self.to_window.send(reply).expect("a reader");
+            }
+            let frame = self.live.latest();
+            if wanted(frame) {
+                return frame.clone();
+            }
+            assert!(begun.elapsed().as_secs() < 60, "stands still at {} s", frame.time_secs());
+        }
+    }
+
+    fn done(&mut self) -> LiveFrame {
+        let sent = self.live.sent();
+        self.until(|frame| frame.acknowledged == sent && !frame.seeking && !frame.playing)
+    }
+}
+
+fn start() -> LiveStart {
+    let config = Config::of_scene("pile");
+    let scene = config.scene(|_| true).expect("a pile");
+    let simulation = scene.simulation().expect("a sound scene");
+    let view = [glam::DVec2::ZERO, glam::DVec2::ONE];
+    LiveStart {
+        scene,
+        config,
+        window: None,
+        simulation,
+        tally: Default::default(),
+        held_by: Vec::new(),
+        view,
+        slumps: true,
+        worlds: Vec::new(),
+        history: None,
+    }
+}
+
+/// What a window asks for, one after the other.
+fn commands(settings: Settings) -> Vec<Command> {
+    let mut commands = vec![Command::Load(Box::new(start())), Command::Compare(vec![settings; 2])];
+    commands.extend((0..30).map(|_| Command::Step));
+    commands.push(Command::Change(1, settings.over(2e-3)));
+    commands.extend((0..10).map(|_| Command::Step));
+    commands.push(Command::Seek(0.02));
+    commands
+}
+
+fn rows(curve: &Curve) -> Vec<slump::sim::Observables> {
+    curve.rows().copied().collect()
+}
+
+fn assert_same(remote: &LiveFrame, local: &LiveFrame) {
+    assert_eq!(remote.worlds.len(), local.worlds.len());
+    assert_eq!(remote.recorded_secs(), local.recorded_secs());
+    assert_eq!(remote.past.len(), local.past.len());
+    for (remote, local) in remote.worlds.iter().zip(&local.worlds) {
+        assert_eq!(remote.snapshot.grains, local.snapshot.grains);
+        assert_eq!(remote.snapshot.observables, local.snapshot.observables);
+        assert_eq!(remote.controls, local.controls);
+        assert_eq!(rows(&remote.curve), rows(&local.curve));
+    }
+}
+
+#[test]
+fn a_remote_run_is_that_of_a_thread() {
+    let settings = Settings::default().with_bond(20.0);
+    let (mut remote, mut local) =
+        (Remote::new(), Live::spawn(LiveOptions::default()).expect("a thread"));
+    for (one, other) in commands(settings).into_iter().zip(commands(settings)) {
+        remote.live.send(one);
+        local.send(other);
+    }
+    let there = remote.done();
+    let sent = local.sent();
+    let here = loop {
+        let frame = local.latest();
+        if frame.acknowledged == sent && !frame.seeking {
+            break frame.clone();
+        }
+        std::thread::yield_now();
+    };
+    assert!(here.worlds[1].curve.rows().count() > 20, "worlds have moved");
+    assert_same(&there, &here);
+}
+
+#[test]
+fn what_is_taken_down_remotely_comes_with_its_start() {
+    let mut remote = Remote::new();
+    remote.live.send(Command::Load(Box::new(start())));
+    remote.live.send(Command::Step);
+    let (sender, taken) = channel::<(String, WorldHistory)>();
+    let hand_on = move |start: std::sync::Arc<LiveStart>, world| {
+        sender.send((start.scene.name.clone(), world)).expect("a reader");
+    };
+    remote.live.send(Command::Take(0, Box::new(hand_on)));
+    let (sender, all) = channel::<LiveStart>();
+    remote
+        .live
+        .send(Command::TakeAll(Box::new(move |start| sender.send(start).expect("a reader"))));
+    let frame = remote.done();
+    let (name, world) = taken.try_recv().expect("a run");
+    assert_eq!((&*name, world.simulation.observables().step), ("pile", 1));
+    assert_eq!(world.simulation.snapshot().grains, frame.worlds[0].snapshot.grains);
+    let all = all.try_recv().expect("all of it");
+    assert!(all.history.is_some_and(|history| history.is_sound()));
+}
+
+#[test]
+fn a_frame_of_a_long_remote_run_sends_what_is_new_alone() {
+    let mut remote = Remote::new();
+    remote.live.send(Command::Load(Box::new(start())));
+    for _ in 0..300 {
+        remote.live.send(Command::Step);
+        remote.done();
+    }
+    let early = std::mem::take(&mut remote.bytes);
+    let whole = remote.live.latest().worlds[0].curve.len();
+    assert!(whole >= 300, "its curve is long: {whole}");
+    for _ in 0..100 {
+        remote.live.send(Command::Step);
+        remote.done();
+    }
+    let late = remote.bytes;
+    assert!(late < early / 2, "100 later frames are {late} bytes, 300 early ones {early}");
+}
+
+#[test]
+fn what_cannot_be_made_remotely_is_refused_in_a_sentence() {
+    let mut remote = Remote::new();
+    let mut broken = start();
+    broken.scene.name = "broken".into();
+    struct None(LiveStart);
+    impl StartSource for None {
+        fn make(self: Box<Self>, _: slump::live::Tell<'_>) -> slump::error::Result<LiveStart> {
+            Ok(self.0)
+        }
+        fn to_bytes(&self) -> slump::error::Result<Vec<u8>> {
+            Err(slump::error::Error::value("start", "here alone", "one that can be sent"))
+        }
+    }
+    remote.live.send(Command::Load(Box::new(None(broken))));
+    let refusal = remote.live.latest().refusal.clone().expect("a refusal");
+    assert_eq!(&*refusal, "start is here alone, but must be one that can be sent");
+}
