@@ -251,6 +251,29 @@ fn commands_are_taken_as_people_guess_them_and_the_short_help_is_short() {
 }
 
 #[test]
+fn run_is_headless_with_the_scene_as_a_word() {
+    let folder = folder();
+    let write_to = |name: &str, line: &str| {
+        let out = folder.path().join(name);
+        succeed(slump(line).arg("--times").arg("0.02").arg("--frames").arg(&out));
+        bytes(out.join("observables.csv"))
+    };
+    let old = write_to("old", "--headless --scene cradle --bond 7 --renderer cpu");
+    let verb = write_to("verb", "run cradle --bond 7 --renderer cpu");
+    let other = write_to("other", "run cradle --dt 1e-3 --renderer cpu");
+    assert!(old == verb && old != other, "run and --headless differ, or --dt makes no difference");
+    for (line, named) in
+        [("run --frames out", "SCENE"), ("run pile collision", "collision"), ("run heap", "heap")]
+    {
+        let said = sentence(slump(line).current_dir(folder.path()));
+        assert!(said.contains(named), "{line}: {said}");
+    }
+    // A window has no use for these, and says so.
+    let said = refusal(&["--scene", "pile", "--data", "out"]);
+    assert!(said.contains("--headless"), "{said}");
+}
+
+#[test]
 fn the_version_says_the_commit() {
     let output = run(&mut slump("--version"));
     let version = String::from_utf8(output.stdout).expect("text");
