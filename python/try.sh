@@ -9,9 +9,8 @@ export SLUMP_PROGRAM=${SLUMP_PROGRAM:-$CARGO_TARGET_DIR/release/slump}
 python=${PYTHON:-python3}
 environment=$CARGO_TARGET_DIR/python-$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 
-cargo fmt --check --manifest-path python/Cargo.toml
-# The lock file is whole, and what is compiled has neither window nor GPU.
-crates=$(cargo tree --locked --manifest-path python/Cargo.toml -e normal,build --prefix none | sed 's/ (.*//' | sort -u)
+# What is compiled has neither window nor GPU.
+crates=$(cargo tree --locked -p slump-python -e normal,build --prefix none | sed 's/ (.*//' | sort -u)
 if grep -E '^(egui|wgpu|winit) ' <<<"$crates"; then
     echo "python/Cargo.toml must leave these out, with all that they need: default-features = false" >&2
     exit 1

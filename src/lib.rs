@@ -38,6 +38,9 @@ pub use slump_studies as study;
 use slump_core::threads;
 use slump_data::output;
 
+/// The version, with the commit where it is known.
+const VERSION: &str = env!("SLUMP_VERSION");
+
 /// The programs of a page of the book.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/rust.md")]

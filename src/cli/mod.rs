@@ -1,11 +1,14 @@
 //! The command line, and one way to say what went wrong.
 
+mod help;
 mod studies;
+
+pub use help::command;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand, ValueEnum};
 
 #[cfg(feature = "window")]
 use crate::app::WindowOptions;
@@ -17,7 +20,7 @@ use crate::output::{
     Progress, check_file, ignore_file_size_signal, lost_stdout, note_line, note_printed,
     print_line, print_text, warn_of_steps, write_file,
 };
-use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, built_in, deposit};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, SolverSettings, StopTest};
 use crate::threads::check_threads;
@@ -25,7 +28,7 @@ use studies::StudyCommand;
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
-#[command(version, args_conflicts_with_subcommands = true)]
+#[command(version = crate::VERSION, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(flatten)]
     config: Config,
@@ -40,6 +43,13 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum CliCommand {
+    /// Run a scene without a window: `slump run pile …` is `slump --headless --scene pile …`
+    Run {
+        #[command(flatten)]
+        config: Box<Config>,
+        #[command(flatten)]
+        headless: Box<HeadlessOptions>,
+    },
     /// Put discs into a box over a rough base, let them come to rest, and write them as CSV
     Generate {
         /// Number of grains
@@ -77,36 +87,19 @@ enum CliCommand {
         #[command(flatten)]
         config: Box<Config>,
     },
-}
-
-/// The options that `-h` tells of; `--help` has all.
-const FIRST: [&str; 16] = [
-    "scene", "grains", "seed", "preset", "duration", "stepper", "bond", "dt", "rho", "mu",
-    "solver", "headless", "frames", "gif", "data", "help",
-];
-
-const EXAMPLES: &str = "Examples:
-  slump --bond 20 --dt 5e-3                           # the window, with a cohesive pile
-  slump --headless --frames out/ --scene cradle       # pictures, and a row a step
-  slump --headless --data run/ --bond 50              # all grains and contacts, for other programs
-  slump budget --bond 20 --out budget/                # physics, time step or solver?
-  slump list scenes";
-
-/// The command line, of which `-h` tells the most important part. Settings say what the shipped pile has.
-pub fn command() -> clap::Command {
-    let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
-    let told = |arg: clap::Arg| {
-        let name = arg.get_id().as_str();
-        let default = pile.and_then(|settings| settings.get(name));
-        let is_first = FIRST.contains(&name);
-        let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
-        let arg = match default {
-            Some(default) => arg.long_help(format!("{help} [pile: {default}]")),
-            None => arg,
-        };
-        arg.hide_short_help(!is_first)
-    };
-    Cli::command().mut_args(told).after_help(EXAMPLES)
+    /// Print what completes commands and options in a shell
+    #[cfg(feature = "manual")]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page of the program, or of a command, for `man`
+    #[cfg(feature = "manual")]
+    Man {
+        /// The command, such as `budget` or `problem solve`
+        #[arg(value_name = "COMMAND")]
+        command: Vec<String>,
+    },
 }
 
 /// Exit code of all that went wrong, but for a signal.
@@ -166,6 +159,9 @@ fn check_stack() -> Result<()> {
 fn run(cli: Cli) -> Result<()> {
     check_threads()?;
     match cli.command {
+        Some(CliCommand::Run { config, headless }) => {
+            crate::headless::run(&config, &HeadlessOptions { headless: true, ..*headless })
+        }
         Some(CliCommand::Generate { grains, box_width, seed, deposition, out }) => {
             let box_width_in_diameters = box_width;
             generate(&NewPile { grains, box_width_in_diameters, seed, deposition }, &out)
@@ -181,6 +177,16 @@ fn run(cli: Cli) -> Result<()> {
         Some(CliCommand::Study(command)) => command.run(),
         Some(CliCommand::Scene { config }) => {
             print_text(scene_to_toml(&settled(&config)?)?);
+            Ok(())
+        }
+        #[cfg(feature = "manual")]
+        Some(CliCommand::Completions { shell }) => {
+            print_text(help::completions(shell));
+            Ok(())
+        }
+        #[cfg(feature = "manual")]
+        Some(CliCommand::Man { command }) => {
+            print_text(help::page(&command)?);
             Ok(())
         }
         None if cli.headless.headless => crate::headless::run(&cli.config, &cli.headless),

@@ -143,7 +143,7 @@ impl Manifest {
     pub(super) fn new(renderer: &str) -> Self {
         Self {
             program: "slump",
-            version: env!("CARGO_PKG_VERSION"),
+            version: crate::VERSION,
             // What is not UTF-8 cannot be told in JSON as it is.
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
             renderer: renderer.to_owned(),

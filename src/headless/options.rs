@@ -104,35 +104,28 @@ pub(crate) struct HeadlessOptions {
     #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
     pub restart: Option<PathBuf>,
     /// Save the run at its end, a signal's too, unless its state is no longer finite
-    #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
+    #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
     pub save: Option<PathBuf>,
     /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
     #[arg(
         long,
         value_name = "SECONDS",
         help_heading = "Saved runs",
-        requires_all = ["headless", "frames"],
+        requires = "frames",
         allow_negative_numbers = true
     )]
     pub checkpoint_every: Option<f64>,
     /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
-    #[arg(long, value_name = "DIR", help_heading = "Data", requires = "headless")]
+    #[arg(long, value_name = "DIR", help_heading = "Data")]
     pub data: Option<PathBuf>,
     /// Simulated time between its moments, seconds [default: the times of the pictures]
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        help_heading = "Data",
-        requires = "headless",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", help_heading = "Data", allow_negative_numbers = true)]
     pub data_every: Option<f64>,
     /// What it is written as [default: parquet]
     #[arg(
         long,
         value_name = "FORMAT",
         help_heading = "Data",
-        requires = "headless",
         value_delimiter = ',',
         value_parser = parser_of::<FormatName>()
     )]

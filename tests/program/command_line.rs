@@ -249,3 +249,46 @@ fn commands_are_taken_as_people_guess_them_and_the_short_help_is_short() {
     let all: String = parts.iter().map(|part| listed(&format!("list {part}"))).collect();
     assert_eq!(all, listed("list"));
 }
+
+#[test]
+fn run_is_headless_with_the_scene_as_a_word() {
+    let folder = folder();
+    let write_to = |name: &str, line: &str| {
+        let out = folder.path().join(name);
+        succeed(slump(line).arg("--times").arg("0.02").arg("--frames").arg(&out));
+        bytes(out.join("observables.csv"))
+    };
+    let old = write_to("old", "--headless --scene cradle --bond 7 --renderer cpu");
+    let verb = write_to("verb", "run cradle --bond 7 --renderer cpu");
+    let other = write_to("other", "run cradle --dt 1e-3 --renderer cpu");
+    assert!(old == verb && old != other, "run and --headless differ, or --dt makes no difference");
+    for (line, named) in
+        [("run --frames out", "SCENE"), ("run pile collision", "collision"), ("run heap", "heap")]
+    {
+        let said = sentence(slump(line).current_dir(folder.path()));
+        assert!(said.contains(named), "{line}: {said}");
+    }
+    // A window has no use for these, and says so.
+    let said = refusal(&["--scene", "pile", "--data", "out"]);
+    assert!(said.contains("--headless"), "{said}");
+}
+
+#[test]
+fn the_version_says_the_commit() {
+    let output = run(&mut slump("--version"));
+    let version = String::from_utf8(output.stdout).expect("text");
+    let plain = format!("slump {}", env!("CARGO_PKG_VERSION"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // An archive of the sources has no commits, and a folder of somebody else's has others.
+    if !root.join(".git").exists() {
+        assert_eq!(version.trim(), plain);
+        return;
+    }
+    let start = format!("{plain} (");
+    let commit = version.trim().strip_prefix(&start).and_then(|it| it.strip_suffix(')'));
+    let commit = commit.unwrap_or_else(|| panic!("{version} without a commit"));
+    let commit = commit.trim_end_matches(", changed");
+    let mut git = Command::new("git");
+    let known = git.args(["cat-file", "-e", commit]).current_dir(root).status();
+    assert!(known.is_ok_and(|it| it.success()), "{commit} is no commit");
+}

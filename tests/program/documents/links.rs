@@ -74,11 +74,17 @@ fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
     assert!(numbers > 20, "{numbers} numbers of reports");
 }
 
+/// Width of a page, pixels.
+const MOST_WIDTH: u32 = 1_200;
+
 #[test]
-fn every_picture_is_shown_and_says_its_result() {
+fn every_picture_fits_a_page_is_shown_and_says_its_result() {
     let texts: Vec<String> = pages().iter().map(read).collect();
     for entry in std::fs::read_dir(root().join("screenshots")).expect("pictures") {
-        let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        let (width, _) = image::image_dimensions(&path).expect("a picture");
+        assert!(width <= MOST_WIDTH, "{name} is {width} pixels wide, but may have {MOST_WIDTH}");
         let shown = texts.iter().flat_map(|text| links(text)).filter(|(_, to)| to.ends_with(&name));
         let said: Vec<&str> = shown.map(|(said, _)| said).collect();
         assert!(!said.is_empty(), "no page shows {name}");

@@ -9,7 +9,7 @@ use slump::setting::Kind;
 use slump::sim::{AlarmKind, Settings};
 
 use super::{book, root};
-use crate::program::{folder, json, read, slump, succeed, write};
+use crate::program::{Command, folder, json, read, run, said, sentence, slump, succeed, write};
 
 /// A part's name, and what makes it.
 type Part = (&'static str, fn() -> String);
@@ -95,9 +95,8 @@ fn option_row(arg: &Arg) -> String {
 fn tables_of(command: &clap::Command, known: &[String]) -> String {
     let is_told = |arg: &&Arg| {
         let name = arg.get_id().as_str();
-        !["help", "version"].contains(&name)
-            && !arg.is_hide_set()
-            && !known.iter().any(|it| it == name)
+        let is_known = known.iter().any(|it| it == name) && !arg.is_positional();
+        !["help", "version"].contains(&name) && !arg.is_hide_set() && !is_known
     };
     let mut headings: Vec<Option<&str>> = Vec::new();
     for arg in command.get_arguments().filter(is_told) {
@@ -126,14 +125,14 @@ fn commands() -> String {
         .collect();
     let mut add = |name: &str, command: &clap::Command| {
         let about = command.get_about().map(ToString::to_string).unwrap_or_default();
-        let takes_scene = command.get_arguments().any(|arg| arg.get_id() == "scene");
-        let also = if takes_scene {
-            " It takes the options of scene, physics and solver above, too."
-        } else {
-            ""
+        let has = |name: &str| command.get_arguments().any(|arg| arg.get_id() == name);
+        let also = match (has("frames"), has("scene")) {
+            (true, _) => " It takes all options above but the window's.",
+            (false, true) => " It takes the options of scene, physics and solver above, too.",
+            (false, false) => "",
         };
         let _ = write!(text, "\n## slump {name}\n\n{about}.{also}\n");
-        let known = if takes_scene { &known[..] } else { &[] };
+        let known = if has("scene") { &known[..] } else { &[] };
         text.push_str(&tables_of(command, known));
     };
     for command in root.get_subcommands() {
@@ -278,4 +277,40 @@ fn every_alarm_is_explained() {
     for alarm in AlarmKind::ALL {
         assert!(page.contains(&format!("\n| `{}` |", alarm.name())), "{alarm} has no row");
     }
+}
+
+#[test]
+fn shells_and_man_can_read_what_the_program_says_of_itself() {
+    let printed = |line: &str| {
+        let output = run(&mut slump(line));
+        assert!(output.status.success(), "{line}: {}", said(&output));
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let folder = folder();
+    let file = folder.path().join("slump.bash");
+    write(&file, printed("completions bash"));
+    // What the shell offers where the line ends so.
+    let offered = |line: &str, last: &str| {
+        let script = format!(
+            "source '{}'; COMP_WORDS=({line} '{last}'); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
+             _slump slump '{last}' \"${{COMP_WORDS[COMP_CWORD - 1]}}\"; echo \"${{COMPREPLY[@]}}\"",
+            file.display()
+        );
+        let output = Command::new("bash").args(["-c", &script]).output().expect("bash starts");
+        assert!(output.status.success(), "{}", said(&output));
+        String::from_utf8(output.stdout).expect("text")
+    };
+    assert_eq!(offered("slump", "bud").trim(), "budget");
+    assert_eq!(offered("slump run", "--check").trim(), "--checkpoint-every");
+    assert!(offered("slump run --stepper", "").contains("tgs-soft"));
+    assert!(printed("completions fish").contains("checkpoint-every"));
+    assert!(printed("completions zsh").starts_with("#compdef slump"));
+
+    // Whether the help is short or long, the page has each option with what it does.
+    let page = printed("man run");
+    for about in ["Make a new pile", "Start the pile from discs", "a scene file", "[pile: "] {
+        assert!(page.contains(about), "{about} in {page}");
+    }
+    let unknown = sentence(&mut slump("man bouquet"));
+    assert!(unknown.contains("bouquet"), "{unknown}");
 }

@@ -17,6 +17,7 @@ use crate::png::png_of_rgb;
 const TITLE: u32 = 27;
 const WORDS: u32 = 24;
 const CAPTION: u32 = 20;
+const WITHIN: u32 = 18;
 /// Room for the words beside the vertical axis, and for each character of longer ones, pixels.
 const BESIDE: u32 = 104;
 const CHARACTER: u32 = 12;
@@ -209,7 +210,7 @@ fn draw_layer<'a, DB: DrawingBackend + 'a>(
     let place = |x: f64, y: f64| (chart.x.scale.place(x), chart.y.scale.place(y));
     match layer {
         Layer::Words { at: (x, y), text, colour } => {
-            let style = (FONT, CAPTION).into_font().color(&rgb(*colour));
+            let style = (FONT, WITHIN).into_font().color(&rgb(*colour));
             let words = Text::new(text.clone(), place(*x, *y), style);
             context.draw_series([words]).map_err(failed)?;
         }

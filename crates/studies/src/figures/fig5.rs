@@ -41,7 +41,7 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
     for (cone, study) in CONES {
         let all = studies.rows(study)?;
         let ensemble = all.ensemble();
-        let y = Axis::linear("slump Δy_G", 0.0, 0.7);
+        let y = Axis::linear("slump", 0.0, 0.7);
         let title = format!("Fig. 5a: slump after 1 s, {cone} cone");
         charts.push(chart(&all, &title, time_steps(), y, |result| result.slump));
         claims.extend(SLUMP_CLAIMS.map(|(bond, said, test, border)| {

@@ -33,7 +33,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let mut chart = Chart::new(
         "Fig. 6: slump against cohesive time",
         Axis::log("Bond·Δt/√(d/g)", 0.06, 32.0),
-        Axis::linear("slump Δy_G", 0.0, 0.6),
+        Axis::linear("slump", 0.0, 0.6),
     );
     let one = points([(1.0, 0.0), (1.0, 0.6)]);
     chart.layers.push(Layer::curve("the paper's guess", one, INK, Look::Dashes(2)));

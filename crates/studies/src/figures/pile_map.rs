@@ -77,7 +77,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let groups = cohesive.groups(log_time, |result| result.slump);
     let claim = claim(&groups, rows.seeds().len());
     let sheet = Sheet {
-        size: (1320, 900),
+        size: (1200, 818),
         charts: vec![chart, scale()],
         caption: vec![format!(
             "Means over {} initial states; red: the Δt of the lowest slump at each Bond number.",
@@ -106,8 +106,7 @@ fn contours(most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
 }
 
 fn scale() -> Chart {
-    let mut scale =
-        Chart::new("", Axis::linear("", 0.0, 1.0), Axis::linear("slump Δy_G", 0.0, MOST));
+    let mut scale = Chart::new("", Axis::linear("", 0.0, 1.0), Axis::linear("slump", 0.0, MOST));
     scale.x.ticks = vec![(-1.0, String::new())];
     let shade = |k: u32| {
         let at = |k: u32| MOST * f64::from(k) / f64::from(SHADES);

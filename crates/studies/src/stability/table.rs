@@ -193,12 +193,12 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Width of a column and height of a row, pixels.
-const COLUMN: u32 = 144;
-const ROW: u32 = 44;
-/// Room for words beside and below, pixels.
-const BESIDE: u32 = 260;
-const BELOW: u32 = 220;
+/// Columns side by side: with more, their words would not fit into a page's width.
+const COLUMNS: usize = 10;
+/// Width of a page, height of a row, and room for words below, pixels.
+const WIDTH: u32 = 1200;
+const ROW: u32 = 32;
+const BELOW: u32 = 150;
 
 /// Colours of holding, degrading and failing, told apart also by their lightness.
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
@@ -207,39 +207,55 @@ pub(super) fn colour(verdict: f64) -> Rgb {
     COLOURS[(verdict as usize).min(2)]
 }
 
-/// The table as a picture.
+/// The table as a picture: blocks of columns, each below its heads.
 pub fn picture(table: &StabilityTable) -> Sheet {
     let challenges = table.challenges();
-    let (columns, rows) = (VARIANTS.len(), challenges.len());
-    let mut x = Axis::linear("", 0.0, columns as f64);
-    x.ticks = (0..columns).map(|k| (k as f64 + 0.5, VARIANTS[k].name.to_owned())).collect();
+    // Names of two words have two lines.
+    let rows_of_block = challenges.len() + 2;
+    let rows = VARIANTS.len().div_ceil(COLUMNS) * rows_of_block;
+    let mut x = Axis::linear("", 0.0, COLUMNS as f64);
+    x.ticks = vec![(0.0, String::new())];
     let mut y = Axis::linear("", 0.0, rows as f64);
-    let height = |row: usize| (rows - row) as f64 - 0.5;
-    y.ticks = (0..rows).map(|row| (height(row), challenges[row].name.to_owned())).collect();
-    let mut chart = Chart::new("Where methods fail", x, y);
     let mut cells = Vec::new();
     let mut words = Vec::new();
-    for (row, challenge) in challenges.iter().enumerate() {
-        for (column, variant) in VARIANTS.iter().enumerate() {
-            let levels = table.levels(challenge, variant);
-            let (verdict, from) = summary(&levels);
-            let middle = (column as f64 + 0.5, height(row));
-            cells.push(chart::MapCell {
-                x: (middle.0, [middle.0 - 0.49, middle.0 + 0.49]),
-                y: (middle.1, [middle.1 - 0.47, middle.1 + 0.47]),
-                value: f64::from(verdict as u8),
-            });
-            let first = levels.iter().find(|cell| cell.verdict != StabilityVerdict::Holds);
-            let text = match (first.map(|cell| cell.level), from) {
-                (Some(first), Some(worst)) if first == worst => format!("from {}", number(first)),
-                (Some(first), Some(worst)) => {
-                    format!("{}, {}", number(first), number(worst))
-                }
-                _ => "holds".to_owned(),
-            };
-            words.push(Layer::Words { at: (middle.0 - 0.4, middle.1 + 0.22), text, colour: INK });
+    for (block, variants) in VARIANTS.chunks(COLUMNS).enumerate() {
+        let height = |row: usize| (rows - block * rows_of_block - row) as f64 - 0.5;
+        let mut write = |text: String, column: usize, row: usize| {
+            let at = (column as f64 + 0.04, height(row) + 0.26);
+            words.push(Layer::Words { at, text, colour: INK });
+        };
+        for (column, variant) in variants.iter().enumerate() {
+            let end_of_first = variant.name.find([' ', '-']).map_or(0, |at| at + 1);
+            let (first, second) = variant.name.split_at(end_of_first);
+            write(first.to_owned(), column, 0);
+            write(second.to_owned(), column, 1);
+        }
+        for (challenge, row) in challenges.iter().zip(2..) {
+            y.ticks.push((height(row), challenge.name.to_owned()));
+            for (column, variant) in variants.iter().enumerate() {
+                let levels = table.levels(challenge, variant);
+                let (verdict, from) = summary(&levels);
+                let (x, y) = (column as f64 + 0.5, height(row));
+                cells.push(chart::MapCell {
+                    x: (x, [x - 0.49, x + 0.49]),
+                    y: (y, [y - 0.47, y + 0.47]),
+                    value: f64::from(verdict as u8),
+                });
+                let first = levels.iter().find(|cell| cell.verdict != StabilityVerdict::Holds);
+                let text = match (first.map(|cell| cell.level), from) {
+                    (Some(first), Some(worst)) if first == worst => {
+                        format!("from {}", number(first))
+                    }
+                    (Some(first), Some(worst)) => {
+                        format!("{}, {}", number(first), number(worst))
+                    }
+                    _ => "holds".to_owned(),
+                };
+                write(text, column, row);
+            }
         }
     }
+    let mut chart = Chart::new("Where methods fail", x, y);
     chart.layers.push(Layer::Cells { name: "verdict".into(), cells, colour });
     chart.layers.extend(words);
     let drivers: Vec<String> =
@@ -250,9 +266,5 @@ pub fn picture(table: &StabilityTable) -> Sheet {
             .into(),
         drivers.join("; "),
     ];
-    Sheet {
-        size: (BESIDE + COLUMN * columns as u32, BELOW + ROW * rows as u32),
-        charts: vec![chart],
-        caption,
-    }
+    Sheet { size: (WIDTH, BELOW + ROW * rows as u32), charts: vec![chart], caption }
 }

@@ -1,0 +1,99 @@
+//! What the command line says of itself: help, completions and manual pages.
+
+use clap::{Arg, Command, CommandFactory};
+
+use super::Cli;
+use crate::config::Config;
+#[cfg(feature = "manual")]
+use crate::error::{Error, Result};
+use crate::scene::built_in;
+
+/// The options that `-h` tells of; `--help` has all.
+const FIRST: [&str; 16] = [
+    "scene", "grains", "seed", "preset", "duration", "stepper", "bond", "dt", "rho", "mu",
+    "solver", "headless", "frames", "gif", "data", "help",
+];
+
+/// The options that a window has no use for.
+const HEADLESS: [&str; 5] = ["save", "checkpoint_every", "data", "data_every", "data_format"];
+
+const EXAMPLES: &str = "Examples:
+  slump --bond 20 --dt 5e-3                           # the window, with a cohesive pile
+  slump run cradle --frames out/                      # pictures, and a row a step
+  slump run pile --bond 50 --data run/                # all grains and contacts, for other programs
+  slump budget --bond 20 --out budget/                # physics, time step or solver?
+  slump list scenes";
+
+const RUN_EXAMPLES: &str = "Examples:
+  slump run pile --bond 20 --frames out/              # pictures, and a row a step
+  slump run pile --grains 500 --seed 3 --gif fall.gif # another pile, as an animation
+  slump run mine.toml --dt 1e-3 --data run/           # a scene file; all grains and contacts
+  slump run cradle --frames out/ --save end.slump     # to be gone on with:
+  slump run --restart end.slump --duration 3 --frames more/";
+
+/// The command line, of which `-h` tells the most important part. Settings say what the shipped pile has.
+pub fn command() -> Command {
+    let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
+    let root = Cli::command();
+    let of_root: Vec<_> = root.get_arguments().map(|arg| arg.get_id().clone()).collect();
+    let told = |arg: Arg| {
+        let name = arg.get_id().as_str();
+        let default = pile.and_then(|settings| settings.get(name));
+        let is_hidden = !FIRST.contains(&name) && of_root.iter().any(|it| it == name);
+        let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+        // Always there: of an option that is not in the short help, a manual page has the long one or none.
+        let long = match default {
+            Some(default) => format!("{help} [pile: {default}]"),
+            None => help,
+        };
+        arg.long_help(long).hide_short_help(is_hidden)
+    };
+    let of_headless = |arg: Arg| match HEADLESS.contains(&arg.get_id().as_str()) {
+        true => arg.requires("headless"),
+        false => arg,
+    };
+    let run = |below: Command| if below.get_name() == "run" { scene_first(below) } else { below };
+    let root = root.mut_args(of_headless).mut_subcommands(run).after_help(EXAMPLES);
+    tell(root, &told)
+}
+
+/// `run` is without a window whatever is said, and takes its scene as a word.
+fn scene_first(run: Command) -> Command {
+    let scene = |scene: Arg| {
+        let scene = scene.long(None).index(1).value_name("SCENE").help_heading(None);
+        scene.required_unless_present_any(["initial", "restart"])
+    };
+    run.mut_arg("scene", scene).mut_arg("headless", |arg| arg.hide(true)).after_help(RUN_EXAMPLES)
+}
+
+/// A command and those below it, each that takes a scene with its arguments as they are `told`.
+fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
+    let takes_scene = command.get_arguments().any(|arg| arg.get_id() == "scene");
+    let command = if takes_scene { command.mut_args(told) } else { command };
+    command.mut_subcommands(|below| tell(below, told))
+}
+
+/// What a shell reads to complete commands and options.
+#[cfg(feature = "manual")]
+pub(super) fn completions(shell: clap_complete::Shell) -> String {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut command(), "slump", &mut text);
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+/// The manual page of the program, or of the command of these names.
+///
+/// # Errors
+/// Where there is no such command.
+#[cfg(feature = "manual")]
+pub(super) fn page(names: &[String]) -> Result<String> {
+    let mut command = command();
+    command.build();
+    let found = names.iter().try_fold(&command, |command, name| command.find_subcommand(name));
+    let allowed = "the name of a command that --help lists";
+    let found = found.ok_or_else(|| Error::value("command", names.join(" "), allowed))?;
+    let mut text = Vec::new();
+    let page = clap_mangen::Man::new(found.clone());
+    page.render(&mut text).map_err(|error| Error::file("man", error))?;
+    Ok(String::from_utf8_lossy(&text).into_owned())
+}
