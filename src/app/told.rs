@@ -23,6 +23,7 @@ pub(super) fn told(
         "step": last.step,
         "time_secs": last.time_secs,
         "slump": last.slump,
+        "state_hash": world.map(|world| world.snapshot.state_hash()),
         // Of the next step, as the solver's thread has them.
         "parameters": world.map(|world| world.controls.settings.parameters),
         "worlds": state.frame.worlds.len(),

@@ -14,7 +14,7 @@ use super::manifest::{Instant, PictureEntry};
 use crate::config::SavedState;
 use crate::error::{Error, Result};
 use crate::output::{
-    FolderLock, Locked, check_recognised, check_writable, final_name, is_recognised,
+    FolderLock, Locked, check_recognised, check_writable, final_name, folder_of, is_recognised,
     remove_if_there,
 };
 use crate::scene::Scene;
@@ -76,7 +76,7 @@ impl RunFolder {
     pub(super) fn check(&self, why: &str) -> Result<()> {
         let names = match self.earlier {
             EarlierFiles::Kept => return Ok(()),
-            EarlierFiles::Refused | EarlierFiles::Cleared => files_of_a_run(&self.path)?,
+            EarlierFiles::Refused | EarlierFiles::Cleared => files_of_a_run(&self.path, None)?,
         };
         if self.earlier == EarlierFiles::Cleared {
             let mut paths = names.iter().map(|name| self.path.join(name));
@@ -91,13 +91,19 @@ impl RunFolder {
     }
 
     /// Removes the pictures in it but for these, which the run goes on with, and what a kill has left half
-    /// named.
+    /// named, the `animation` among it where that is in the folder.
     ///
     /// # Errors
     /// Names a picture that is not there, or that cannot be removed.
-    pub(super) fn keep_pictures(&self, pictures: &[PictureEntry]) -> Result<()> {
+    pub(super) fn keep_pictures(
+        &self,
+        pictures: &[PictureEntry],
+        animation: Option<&Path>,
+    ) -> Result<()> {
+        let inside = animation.filter(|path| folder_of(path) == self.path);
+        let inside = inside.and_then(|path| path.file_name()?.to_str());
         let is_kept = |name: &str| pictures.iter().any(|picture| picture.file == name);
-        let names = files_of_a_run(&self.path)?;
+        let names = files_of_a_run(&self.path, inside)?;
         if let Some(lost) = pictures.iter().find(|picture| !names.contains(&picture.file)) {
             let reason = "is missing, but must be where the checkpoint tells of it";
             return Err(Error::file(self.path.join(&lost.file), reason));
@@ -118,7 +124,7 @@ impl RunFolder {
         if self.earlier != EarlierFiles::Cleared {
             return Ok(());
         }
-        let mut names = files_of_a_run(&self.path)?;
+        let mut names = files_of_a_run(&self.path, None)?;
         names.extend(told_of(&self.path));
         for path in names.iter().map(|name| self.path.join(name)).filter(|path| is_plain(path)) {
             // A list that anyone can edit may tell of anything.
@@ -130,8 +136,8 @@ impl RunFolder {
     }
 }
 
-/// The names that every run uses, of those that are there.
-fn files_of_a_run(folder: &Path) -> Result<Vec<String>> {
+/// The names that every run uses, and that of its `animation`, of those that are there.
+fn files_of_a_run(folder: &Path, animation: Option<&str>) -> Result<Vec<String>> {
     let refuse = |error| Error::file(folder, error);
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(refuse)? {
@@ -139,6 +145,7 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<String>> {
         let name = name.to_string_lossy();
         let whole = final_name(&name);
         let is_ours = is_frame(whole)
+            || animation == Some(whole)
             || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&whole);
         if is_ours && is_plain(&folder.join(&*name)) {
             names.push(name.into_owned());

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::scene::Scene;
-use crate::sim::{Alarm, FractureWork, Observables, SweepElasticity, Tally};
+use crate::sim::{Alarm, FractureWork, Observables, SweepElasticity, Tally, hash_of_bits};
 use crate::study::Recorded;
 
 /// `manifest.json`.
@@ -72,6 +72,8 @@ pub(super) struct RunEntry {
     pub fixed_discs: usize,
     /// Tells initial states apart: FNV-1a over all numbers of the grains, bit by bit.
     pub initial_state: String,
+    /// Tells the states apart that runs come to ([`crate::sim::Snapshot::state_hash`]); empty until it has ended.
+    pub last_state: String,
     pub tally: Tally,
     /// The moment of the saved run that this one goes on with (`--restart`).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -201,7 +203,8 @@ impl RunEntry {
             scene: said,
             grains: scene.grains.len(),
             fixed_discs: scene.fixed_discs.len(),
-            initial_state: format!("{:016x}", fingerprint(scene)),
+            initial_state: hash_of_start(scene),
+            last_state: String::new(),
             tally: Tally::default(),
             restarted_from: None,
             went_on_at: Vec::new(),
@@ -225,18 +228,17 @@ impl RunEntry {
         let alarms = simulation.alarms().iter().map(entry).collect();
         let sweeps = tally.sweeps as f64 / tally.steps.max(1) as f64;
         let sweep_elasticity = simulation.sweep_elasticity(sweeps);
-        let tally = *tally;
-        *self = Self { ended, step, time_secs, tally, alarms, sweep_elasticity, ..self.clone() };
+        let (tally, last_state) = (*tally, simulation.snapshot().state_hash());
+        let so_far = self.clone();
+        *self =
+            Self { ended, step, time_secs, last_state, tally, alarms, sweep_elasticity, ..so_far };
     }
 }
 
-/// FNV-1a, 64 bits (draft-eastlake-fnv, 5).
-fn fingerprint(scene: &Scene) -> u64 {
-    let numbers = scene.grains.iter().flat_map(|grain| {
+/// Tells initial states apart.
+fn hash_of_start(scene: &Scene) -> String {
+    hash_of_bits(scene.grains.iter().flat_map(|grain| {
         let (position, velocity) = (grain.position, grain.velocity);
         [position.x, position.y, grain.radius, velocity.x, velocity.y, grain.angular_velocity]
-    });
-    numbers.flat_map(f64::to_le_bytes).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
-    })
+    }))
 }

@@ -52,7 +52,11 @@ pub(super) fn draw(
     };
     let goes_on = !begun.marks.went_on_at.is_empty();
     if let Some(folder) = &folder {
-        if goes_on { folder.keep_pictures(&begun.marks.pictures)? } else { folder.clear()? }
+        if goes_on {
+            folder.keep_pictures(&begun.marks.pictures, options.animation())?;
+        } else {
+            folder.clear()?;
+        }
     }
     if options.draws() {
         note_line(format_args!("drawing with {}", renderer.name()));

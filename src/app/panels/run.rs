@@ -66,6 +66,12 @@ pub(super) fn command_line(ui: &mut Ui, state: &mut AppState) {
             state.copy_link(ui.ctx());
         }
     });
+    if let Some(world) = state.world() {
+        let text = format!("State {}", world.snapshot.state_hash());
+        let hint = "A hash of where all grains are and how they move, bit by bit. Runs with the same one have come to the \
+                    same state; manifest.json has it as last_state.";
+        ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
+    }
 }
 
 fn scene_box(ui: &mut Ui, state: &mut AppState) {

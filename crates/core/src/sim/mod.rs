@@ -30,6 +30,6 @@ pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};
 pub use run::{RunEnding, Tally};
 pub use settings::Settings;
 pub use simulation::{ProblemVisitor, Simulation};
-pub use snapshot::{ContactView, GrainView, MotionView, Snapshot, Surroundings};
+pub use snapshot::{ContactView, GrainView, MotionView, Snapshot, Surroundings, hash_of_bits};
 pub use steppers::{FractureWork, SpringDashpot, Stepper, StepperInfo};
 pub use stepping::{Advance, BondEnergies, Stage, StepResult};

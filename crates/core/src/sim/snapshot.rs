@@ -25,6 +25,25 @@ pub struct Snapshot {
     pub surroundings: Arc<Surroundings>,
 }
 
+impl Snapshot {
+    /// Tells states apart: a hash of where all grains are and how they move, bit by bit.
+    pub fn state_hash(&self) -> String {
+        hash_of_bits(self.grains.iter().flat_map(|grain| {
+            let GrainView { position, velocity, angle, angular_velocity, .. } = *grain;
+            [position.x, position.y, velocity.x, velocity.y, angle, angular_velocity]
+        }))
+    }
+}
+
+/// FNV-1a, 64 bits (draft-eastlake-fnv, 5), over all bits of numbers, as 16 hexadecimal digits.
+pub fn hash_of_bits(numbers: impl IntoIterator<Item = f64>) -> String {
+    let bytes = numbers.into_iter().flat_map(f64::to_le_bytes);
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
 /// The part of a picture that grains do not change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

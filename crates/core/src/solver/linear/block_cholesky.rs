@@ -287,6 +287,16 @@ fn less_products<const D: usize, const N: usize>(
     left
 }
 
+#[cfg(target_arch = "wasm32")]
+use super::fused::multiply_add;
+
+/// a·b + c, rounded once, on every processor alike: those that have no such operation take longer.
+#[cfg(not(target_arch = "wasm32"))]
+#[inline(always)]
+fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
+    a.mul_add(b, c)
+}
+
 /// from − aᵀb.
 #[inline(always)]
 fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Padded<D>) {
@@ -294,8 +304,7 @@ fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Pad
     for (factors, entries) in a.0.iter().zip(&b.0) {
         for (to, factor) in result.0.iter_mut().zip(factors) {
             for column in 0..WIDTH {
-                // Rounded once, on every processor alike: those that have no such operation take far longer.
-                to[column] = (-factor).mul_add(entries[column], to[column]);
+                to[column] = multiply_add(-factor, entries[column], to[column]);
             }
         }
     }

@@ -1,0 +1,166 @@
+//! Slump in a page. The page draws and asks; a worker of it, another instance of this module, computes.
+//!
+//! Both know each other by messages of bytes alone, which `static/index.html` and `static/worker.js` pass on.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::mpsc::{Sender, channel};
+
+use eframe::egui::{Context, Ui};
+use slump::app::{AppState, Opening, browser};
+use slump::live::{Live, RemoteEngine};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+extern "C" {
+    /// Brings a message from the page to its worker.
+    fn slump_ask(message: Vec<u8>);
+    /// Brings a message from the worker to its page.
+    fn slump_answer(message: Vec<u8>);
+    /// Has the browser save a file.
+    fn slump_save(name: &str, bytes: Vec<u8>);
+    /// Keeps what the page remembers.
+    fn slump_store(text: &str);
+}
+
+/// The worker's side.
+#[wasm_bindgen]
+pub struct Engine(RemoteEngine<Opening>);
+
+#[wasm_bindgen]
+impl Engine {
+    /// One with nothing loaded.
+    #[wasm_bindgen(constructor)]
+    #[allow(clippy::new_without_default, reason = "a page asks for it by `new`")]
+    pub fn new() -> Self {
+        console_error_panic_hook::set_once();
+        Self(browser::engine(Box::new(slump_answer)))
+    }
+
+    /// Takes in a message of the page.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn receive(&mut self, message: &[u8]) -> Result<(), JsError> {
+        self.0.receive(message).map_err(|error| JsError::new(&error.to_string()))
+    }
+
+    /// Does what is due. Returns for how many milliseconds nothing is, and −1 where only a message changes that.
+    pub fn turn(&mut self) -> f64 {
+        self.0.turn().map_or(-1.0, |wait| 1e3 * wait.as_secs_f64())
+    }
+}
+
+/// Files that were dropped, once they are read.
+type Dropped = Rc<RefCell<Vec<(PathBuf, Vec<u8>)>>>;
+
+/// The page's side.
+#[wasm_bindgen]
+pub struct Page {
+    answers: Sender<Vec<u8>>,
+    context: Context,
+    told: Rc<RefCell<String>>,
+}
+
+#[wasm_bindgen]
+impl Page {
+    /// Takes in a message of the worker.
+    pub fn receive(&self, message: Vec<u8>) {
+        // The laboratory lasts as long as the page.
+        let _ = self.answers.send(message);
+        self.context.request_repaint();
+    }
+
+    /// State of page and run as JSON, for tests.
+    pub fn told(&self) -> String {
+        self.told.borrow().clone()
+    }
+}
+
+/// Opens the laboratory on a canvas: as it was `stored`, at what the page's `address` names.
+///
+/// # Errors
+/// Where the browser draws neither by WebGPU nor by WebGL 2.
+#[wasm_bindgen]
+pub async fn open(
+    canvas: web_sys::HtmlCanvasElement,
+    stored: String,
+    address: String,
+) -> Result<Page, JsValue> {
+    console_error_panic_hook::set_once();
+    let (answers, inbox) = channel();
+    let context: Rc<RefCell<Option<Context>>> = Rc::default();
+    let told: Rc<RefCell<String>> = Rc::default();
+    let (its_context, its_told) = (Rc::clone(&context), Rc::clone(&told));
+    let options = eframe::WebOptions { dithering: false, ..eframe::WebOptions::default() };
+    let make = move |creation: &eframe::CreationContext<'_>| {
+        if let Some(target) = &creation.wgpu_render_state {
+            let format = target.target_format;
+            browser::prepare(&mut target.renderer.write().callback_resources, format);
+        }
+        let live = Live::remote(Box::new(slump_ask), inbox);
+        let state = browser::begin(live, &stored, &address, &creation.egui_ctx);
+        *its_context.borrow_mut() = Some(creation.egui_ctx.clone());
+        let context = creation.egui_ctx.clone();
+        let dropped = Dropped::default();
+        let app: Box<dyn eframe::App> =
+            Box::new(Laboratory { state, context, told: its_told, dropped });
+        Ok(app)
+    };
+    eframe::WebRunner::new().start(canvas, options, Box::new(make)).await?;
+    let context = context.borrow().clone().unwrap_or_default();
+    Ok(Page { answers, context, told })
+}
+
+struct Laboratory {
+    state: AppState,
+    context: Context,
+    told: Rc<RefCell<String>>,
+    dropped: Dropped,
+}
+
+impl Laboratory {
+    /// Has files read that are dropped in this frame, and opens those that have been.
+    fn take_dropped_files(&mut self, context: &Context) {
+        for file in context.input(|input| input.raw.dropped_files.clone()) {
+            let (dropped, context) = (Rc::clone(&self.dropped), context.clone());
+            wasm_bindgen_futures::spawn_local(async move {
+                if let Ok(bytes) = file.bytes_async().await {
+                    dropped.borrow_mut().push((file.path().to_owned(), bytes));
+                    context.request_repaint();
+                }
+            });
+        }
+        for (path, bytes) in self.dropped.take() {
+            browser::open_file(&mut self.state, path, bytes);
+        }
+    }
+}
+
+impl eframe::App for Laboratory {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        let context = ui.ctx().clone();
+        self.take_dropped_files(&context);
+        slump::app::ui(ui, &mut self.state);
+        for (path, bytes) in browser::written_files() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            slump_save(&name, bytes);
+        }
+        let (size, scale) = (context.content_rect().size(), context.pixels_per_point());
+        let pixels = [size.x * scale, size.y * scale].map(|side| side as u32);
+        *self.told.borrow_mut() = browser::told(&self.state, pixels, scale);
+    }
+
+    fn save(&mut self, _: &mut dyn eframe::Storage) {
+        slump_store(&browser::stored(&self.state.preferences, &self.context));
+    }
+
+    fn auto_save_interval(&self) -> std::time::Duration {
+        std::time::Duration::from_secs(5)
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Opens the page in Chromium and holds it against the program: web/try.py PAGE PROGRAM [PICTURES]
+
+PAGE is the folder that web/build.sh made, PROGRAM the command line `slump`. Pictures of what was seen go to the
+folder PICTURES, to be looked at. It asks for Debian's chromium and chromium-driver, and for nothing of Python's but
+its own library.
+"""
+import base64
+import csv
+import functools
+import http.server
+import json
+import pathlib
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+
+PAGE, PROGRAM = sys.argv[1], str(pathlib.Path(sys.argv[2]).resolve())
+PICTURES = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
+STEPS = 300
+PATIENCE_SECS = 90
+
+
+class Files(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+class Browser:
+    """Headless Chromium with a software rasteriser, by WebDriver."""
+
+    def __init__(self, size):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        self.driver = subprocess.Popen(["chromedriver", f"--port={self.port}"], **quiet)
+        self.downloads = tempfile.mkdtemp()
+        arguments = [
+            "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+            "--ignore-gpu-blocklist", f"--window-size={size[0]},{size[1]}",
+        ]
+        options = {
+            "browserName": "chrome",
+            "goog:loggingPrefs": {"browser": "ALL"},
+            "goog:chromeOptions": {
+                "args": arguments,
+                "prefs": {"download.default_directory": self.downloads},
+            },
+        }
+        answer = None
+        for _ in range(100):
+            try:
+                answer = self.ask("POST", "/session", {"capabilities": {"alwaysMatch": options}})
+                break
+            except OSError:
+                time.sleep(0.1)
+        self.session = "/session/" + answer["sessionId"]
+
+    def ask(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", data, method=method)
+        return json.load(urllib.request.urlopen(request, timeout=120))["value"]
+
+    def command(self, path, **body):
+        return self.ask("POST", self.session + path, body)
+
+    def open(self, url):
+        self.command("/url", url=url)
+
+    def run(self, script):
+        return self.command("/execute/sync", script=script, args=[])
+
+    def told(self):
+        """What the page tells of itself; nothing before it runs."""
+        text = self.run("return globalThis.slump ? slump.told() : ''")
+        return json.loads(text) if text else None
+
+    def until(self, what, wanted):
+        end = time.time() + PATIENCE_SECS
+        told = None
+        while time.time() < end:
+            told = self.told()
+            if told and wanted(told):
+                return told
+            time.sleep(0.1)
+        brief = told and {name: told[name] for name in ("scene", "step", "playing", "worlds", "frames")}
+        sys.exit(f"not so within {PATIENCE_SECS} s: {what}; the page tells {brief}; {self.logs()}")
+
+    def pointer(self, *actions):
+        finger = {"type": "pointer", "id": "hand", "parameters": {"pointerType": "mouse"}}
+        self.command("/actions", actions=[finger | {"actions": list(actions)}])
+
+    def drag(self, start, end):
+        move = lambda at: {"type": "pointerMove", "x": round(at[0]), "y": round(at[1]), "duration": 100}
+        self.pointer(
+            move(start), {"type": "pointerDown", "button": 0}, move(end), {"type": "pause", "duration": 200},
+            {"type": "pointerUp", "button": 0})
+
+    def click(self, at):
+        self.drag(at, at)
+
+    def picture(self, name):
+        if PICTURES:
+            PICTURES.mkdir(parents=True, exist_ok=True)
+            image = self.ask("GET", self.session + "/screenshot")
+            (PICTURES / f"{name}.png").write_bytes(base64.b64decode(image))
+
+    def logs(self):
+        return [entry["message"] for entry in self.command("/se/log", type="browser") if entry["level"] == "SEVERE"]
+
+    def close(self):
+        self.driver.terminate()
+        self.driver.wait()
+
+
+def middle(told, name):
+    left, top, right, bottom = told["controls"][name]
+    return (left + right) / 2, (top + bottom) / 2
+
+
+def program_rows(options, steps):
+    """The last row of what the program computes."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [PROGRAM, "--headless", "--frames", folder, "--size", "64x48", "--renderer", "cpu", "--fps", "10", *options]
+        subprocess.run(command, check=True, capture_output=True)
+        with open(pathlib.Path(folder) / "observables.csv", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if int(row["step"]) == steps]
+    return rows[0]
+
+
+server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=PAGE))
+threading.Thread(target=server.serve_forever, daemon=True).start()
+address = f"http://127.0.0.1:{server.server_port}/index.html"
+browser = Browser((1280, 800))
+try:
+    begun = time.time()
+    browser.open(address)
+    told = browser.until("the first lesson shows", lambda told: told["grains"] > 0 and told["lesson"] == 1)
+    print(f"first picture after {time.time() - begun:.1f} s")
+    browser.picture("lesson")
+
+    browser.click(middle(told, "release"))
+    browser.until("it moves", lambda told: told["step"] > 20)
+    begun, first = time.time(), browser.told()["frames"]
+    told = browser.until("it comes to its end", lambda told: not told["playing"] and told["step"] > 20)
+    rate = (told["frames"] - first) / (time.time() - begun)
+    print(f"lesson 1 to its end at {told['time_secs']:.3f} s, {rate:.0f} frames of the run a second")
+    browser.picture("end")
+
+    query = f"scene=pile&bond=20&dt=1e-3&solver=nsgs&to={STEPS}"
+    browser.open(f"{address}?{query}")
+    told = browser.until("the link's run is there", lambda told: told["step"] == STEPS)
+    duration = f"{STEPS * 1e-3}"
+    options = ["--scene", "pile", "--bond", "20", "--dt", "1e-3", "--solver", "nsgs", "--duration", duration]
+    row = program_rows(options, STEPS)
+    print(f"slump of the link: page {told['slump']!r}, program {row['slump']}")
+    assert told["slump"] == float(row["slump"]), "page and program differ"
+    browser.picture("link")
+
+    left, top, right, bottom = told["controls"]["Δt"]
+    before = told["parameters"]["time_step_secs"]
+    at = (left + right) / 2, (top + bottom) / 2
+    browser.drag(at, (left + 0.8 * (right - left), at[1]))
+    told = browser.until("Δt is another", lambda told: told["parameters"]["time_step_secs"] != before)
+    print(f"Δt dragged from {before} s to {told['parameters']['time_step_secs']} s")
+
+    logs = [entry for entry in browser.logs() if "favicon" not in entry]
+    assert not logs, f"the console has errors: {logs}"
+finally:
+    browser.close()
