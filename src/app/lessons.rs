@@ -4,6 +4,7 @@
 use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui};
 use serde::{Deserialize, Serialize};
 
+use super::IS_PAGE;
 use super::opening::Opening;
 use super::panels::Page;
 use super::preferences::Preferences;
@@ -94,8 +95,13 @@ fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
 pub const LESSONS: [Lesson; 7] = [
     Lesson {
         title: "The time step glues",
-        watch: "One pile twice, with the same cohesion. Only the solver's time step differs: 0.1 ms and 5 ms. Release, \
-                and watch the slump; other piles, in the plot, say how far one pile speaks for all.",
+        watch: if IS_PAGE {
+            "One pile twice, with the same cohesion. Only the solver's time step differs: 0.1 ms and 5 ms. Release, \
+             and watch the slump. The mean of many piles differs likewise."
+        } else {
+            "One pile twice, with the same cohesion. Only the solver's time step differs: 0.1 ms and 5 ms. Release, \
+             and watch the slump; other piles, in the plot, say how far one pile speaks for all."
+        },
         worlds: |base| two_time_steps(base, 20.0),
         ..PILE
     },
