@@ -16,10 +16,10 @@ const COUNTS: [i64; 12] = [0, 1, 2, 3, 5, 8, 16, 1 << 20, 1 << 28, i32::MAX as i
 
 #[test]
 fn columnar_files_by_structure() {
-    let target = Target { name: "columnar", ending: "parquet" };
+    let target = Target { name: "columnar", ending: "parquet", inputs: 1000 };
     target.fuzz(
         &[],
-        |u, _| {
+        |u| {
             let mut file = Columnar::default();
             for _ in 0..u.int_in_range(1..=3)? {
                 let number = *u.choose(&COUNTS)?;
@@ -67,10 +67,10 @@ fn saved_runs_that_were_changed_and_sealed_again() {
     let simulation = scene.simulation().expect("a simulation");
     let whole = SavedState::new(scene, simulation, Tally::default()).to_bytes().expect("bytes");
     let content = whole.iter().position(|&byte| byte == b'\n').expect("a first line") + 1;
-    let target = Target { name: "saved-runs", ending: "slump" };
+    let target = Target { name: "saved-runs", ending: "slump", inputs: 500 };
     target.fuzz(
         &[],
-        |u, _| {
+        |u| {
             let mut bytes = whole[content..].to_vec();
             for _ in 0..u.int_in_range(1..=4)? {
                 let place = u.choose_index(bytes.len())?;
@@ -102,10 +102,10 @@ fn links() {
         "slump://run?save=a&to=18446744073709551616",
     ];
     let texts = texts.map(str::to_owned);
-    let target = Target { name: "links", ending: "txt" };
+    let target = Target { name: "links", ending: "txt", inputs: 60 };
     target.fuzz(
         &texts,
-        |u, _| {
+        |u| {
             let mut link = changed(u, &texts)?;
             if u.ratio(1, 4)? {
                 link = format!("{link}&to={}", one_of(u, NUMBERS)?);

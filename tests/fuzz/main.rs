@@ -2,10 +2,10 @@
 //! with every stepper, method and remedy, and whole command lines. Nothing may panic, hang or pass in
 //! silence.
 //!
-//! Each target runs for a moment in the ordinary suite, for as long as `SLUMP_FUZZ_SECS` says otherwise:
-//! `SLUMP_FUZZ_SECS=1030 cargo test --release --test fuzz` takes an hour on two cores. What fails stays in
-//! a file that the failure names. It goes to the target's folder in `corpus/`, whose files are tried first,
-//! and stays there.
+//! The same inputs are tried each time: as many as a target says, `SLUMP_FUZZ_TIMES` times as many, or as many as there is
+//! time for where `SLUMP_FUZZ_SECS` gives a target so many seconds. `SLUMP_FUZZ_SEED` is a number that asks for others,
+//! `ARBTEST_SEED` for the one whose seed a failure tells. What fails stays in a file that the failure names. It goes to the
+//! target's folder in `corpus/`, whose files are tried first, and stays there.
 
 #[path = "../common/columnar.rs"]
 mod columnar;
@@ -23,39 +23,47 @@ use arbitrary::Unstructured;
 use program::*;
 use trial::Trial;
 
-/// Time that a target gets where nothing else is said, s.
-const MOMENT_SECS: f64 = 1.0;
-
-/// What takes longer is not tried with changes: too few other inputs would be.
-const QUICK: Duration = Duration::from_millis(50);
+/// Bytes that an input is drawn from: more than any needs.
+const DRAWN_FROM: u64 = 1 << 16;
 
 #[derive(Clone, Copy)]
 struct Target {
     name: &'static str,
     ending: &'static str,
+    /// Inputs in the ordinary suite: about a second of them.
+    inputs: u64,
 }
 
 impl Target {
-    /// Tries what is in `kept`, then what `draw` makes of random bytes for as long as asked for, and says
-    /// how many inputs there were. `draw` gets those of `kept` that are quick. `check` gets each as a text
-    /// and as a file; whether it was taken.
+    /// Tries what is in `kept`, then what `draw` makes of random bytes, as often as asked for, and says how many inputs
+    /// there were. `check` gets each as a text and as a file; whether it was taken.
     fn fuzz(
         self,
         kept: &[String],
-        mut draw: impl FnMut(&mut Unstructured<'_>, &[String]) -> arbitrary::Result<String>,
+        mut draw: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<String>,
         mut check: impl FnMut(&str, &Path) -> bool,
     ) {
         let mut trial = Trial::start(self);
-        let mut quick = kept.to_vec();
-        quick.retain(|text| trial.of(text, &mut check) < QUICK);
-        let secs = std::env::var("SLUMP_FUZZ_SECS").ok().and_then(|secs| secs.parse().ok());
-        let millis = 1e3 * secs.unwrap_or(MOMENT_SECS);
-        arbtest::arbtest(|u| {
-            trial.of(&draw(u, &quick)?, &mut check);
+        for text in kept {
+            trial.of(text, &mut check);
+        }
+        let mut property = |u: &mut Unstructured<'_>| {
+            if let Ok(text) = draw(u) {
+                trial.of(&text, &mut check);
+            }
             Ok(())
-        })
-        .budget_ms(millis as u64)
-        .run();
+        };
+        if std::env::var_os("ARBTEST_SEED").is_some() {
+            return arbtest::arbtest(property).run();
+        }
+        let (run, begun) = (asked_for("SLUMP_FUZZ_SEED").unwrap_or(1), Instant::now());
+        let secs = asked_for("SLUMP_FUZZ_SECS").map(Duration::from_secs);
+        let inputs = self.inputs * asked_for("SLUMP_FUZZ_TIMES").unwrap_or(1);
+        let mut number = 0;
+        while secs.map_or(number < inputs, |secs| begun.elapsed() < secs) {
+            arbtest::arbtest(&mut property).seed(seed(run, number)).run();
+            number += 1;
+        }
         let Trial { inputs, taken, .. } = trial;
         println!("{}: {inputs} inputs, {} of them kept, {taken} taken", self.name, kept.len());
     }
@@ -66,4 +74,16 @@ impl Target {
         let folder = ours.join(self.name);
         names_in(&folder).iter().map(|name| read(folder.join(name))).collect()
     }
+}
+
+fn asked_for(variable: &str) -> Option<u64> {
+    let number = |text: String| text.parse().unwrap_or_else(|_| panic!("{variable} is {text}"));
+    std::env::var(variable).ok().map(number)
+}
+
+/// The seed of an input of a run: what is random, and in its lower half the number of bytes.
+fn seed(run: u64, number: u64) -> u64 {
+    let hash = blake3::hash(&[run.to_le_bytes(), number.to_le_bytes()].concat());
+    let random = hash.as_bytes().iter().take(4).fold(0, |seed, &byte| seed << 8 | u64::from(byte));
+    random << u32::BITS | DRAWN_FROM
 }

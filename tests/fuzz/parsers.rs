@@ -33,17 +33,11 @@ pub fn check(refusal: &Error) {
     assert!(said.contains("must "), "{said:?} does not say what is allowed");
 }
 
-/// Tries the texts given and those that ever failed, and others that are nearly those.
-fn fuzz_texts<T>(
-    name: &'static str,
-    ending: &'static str,
-    mut texts: Vec<String>,
-    parse: impl Fn(&str, &Path) -> Result<T>,
-) {
-    let target = Target { name, ending };
-    texts.extend(target.corpus());
+/// Tries the texts given and those that ever failed, and others that are nearly those given.
+fn fuzz_texts<T>(target: Target, texts: Vec<String>, parse: impl Fn(&str, &Path) -> Result<T>) {
+    let kept = [texts.clone(), target.corpus()].concat();
     let check = |text: &str, path: &Path| parse(text, path).inspect_err(check).is_ok();
-    target.fuzz(&texts, changed, check);
+    target.fuzz(&kept, |u| changed(u, &texts), check);
 }
 
 fn file(path: &str) -> String {
@@ -61,7 +55,8 @@ fn scene_files() {
     rained.grains.clear();
     rained.source = Some(GrainSource::NewPile(NewPile::default()));
     texts.push(scene_to_toml(&rained).expect("TOML"));
-    fuzz_texts("scene-files", "toml", texts, |_, path| {
+    let target = Target { name: "scene-files", ending: "toml", inputs: 300 };
+    fuzz_texts(target, texts, |_, path| {
         // Where grains are rained, many of them may well take their time.
         let scene = Config::of_scene(text(path)).without_settling()?;
         scene.simulation()
@@ -76,7 +71,8 @@ fn tables_of_discs() {
     for count in [2_000, 20_000] {
         texts.push(format!("x,y,radius\n{}", "0,0.01,0.0025\n".repeat(count)));
     }
-    fuzz_texts("discs", "csv", texts, |_, path| {
+    let target = Target { name: "discs", ending: "csv", inputs: 200 };
+    fuzz_texts(target, texts, |_, path| {
         let source = SceneSource { initial: Some(path.to_owned()), ..SceneSource::default() };
         let scene = Config { source, ..Config::default() }.scene(|_| true)?;
         scene.simulation()
@@ -87,7 +83,8 @@ fn tables_of_discs() {
 fn studies() {
     let names = ["pile", "cradle", "cradle-map", "pile-map", "default"];
     let texts = names.map(|name| file(&format!("assets/studies/{name}.toml"))).into();
-    fuzz_texts("studies", "toml", texts, |text, path| Study::parse(text, path, true));
+    let target = Target { name: "studies", ending: "toml", inputs: 100 };
+    fuzz_texts(target, texts, |text, path| Study::parse(text, path, true));
 }
 
 /// Reads a problem and solves it for a while, by a method that hangs on the text alone.
@@ -117,7 +114,8 @@ fn problem_files() {
         serde_json::to_string_pretty(&problem).expect("JSON")
     };
     let texts = vec![problem("arch", 0.01), problem("squeeze", 0.01), problem("cradle", 0.0)];
-    fuzz_texts("problem-files", "json", texts, solve_briefly);
+    let target = Target { name: "problem-files", ending: "json", inputs: 1000 };
+    fuzz_texts(target, texts, solve_briefly);
 }
 
 #[test]
@@ -132,7 +130,8 @@ fn texts_of_siconos() {
          col 1 : locations 2 to 2\n      1 : 6\n    col 2 : locations 3 to 4\n      0 : -1\n      \
          2 : 2\n    col 3 : locations 5 to 5\n      3 : 6\n-1 0\n-0.1 0.5\n0.5 0\n"
     );
-    fuzz_texts("siconos", "dat", vec![one, two], solve_briefly);
+    let target = Target { name: "siconos", ending: "dat", inputs: 400 };
+    fuzz_texts(target, vec![one, two], solve_briefly);
 }
 
 /// Numbers that break what was not made for them.

@@ -235,24 +235,20 @@ pub fn scene_text(u: &mut Unstructured<'_>) -> Result<String> {
 
 #[test]
 fn random_scenes_with_everything() {
-    let target = Target { name: "scenes", ending: "toml" };
-    target.fuzz(
-        &target.corpus(),
-        |u, _| scene_text(u),
-        |_, path| {
-            let started = read_scene(path).and_then(|scene| Ok((scene.simulation()?, scene)));
-            match started {
-                Ok((simulation, scene)) => {
-                    run(&scene, simulation);
-                    true
-                }
-                Err(refusal) => {
-                    check(&refusal);
-                    false
-                }
+    let target = Target { name: "scenes", ending: "toml", inputs: 80 };
+    target.fuzz(&target.corpus(), scene_text, |_, path| {
+        let started = read_scene(path).and_then(|scene| Ok((scene.simulation()?, scene)));
+        match started {
+            Ok((simulation, scene)) => {
+                run(&scene, simulation);
+                true
             }
-        },
-    );
+            Err(refusal) => {
+                check(&refusal);
+                false
+            }
+        }
+    });
 }
 
 const STEPS: u32 = 50;

@@ -186,6 +186,21 @@ fn converged_never_stands_beside_a_residual_that_is_not_finite() {
     }
 }
 
+#[test]
+fn a_run_ends_where_no_number_holds_its_energy() {
+    for (stepper, method) in every_way() {
+        let grains = vec![moving(DVec2::ZERO, 0.1, 1e200 * DVec2::X)];
+        let mut thrown = without_g(parameters(0.0, 1e-3, 0.0, 0.5), grains);
+        (thrown.stepper, thrown.solver.method) = (stepper, method);
+        let mut run = start(&thrown);
+        let ends = run.step().is_err();
+        let seen = run.observables();
+        let finite = run.world().grains.velocities[0].is_finite();
+        assert!(finite && seen.kinetic_energy.is_infinite(), "{stepper} {method}: the situation");
+        assert!(ends && !seen.converged, "{stepper} {method}: {seen:?}");
+    }
+}
+
 // Piles are chaotic, so single slumps move by some hundredths with anything. Each claim is one of the mean of paired
 // differences over the initial states, with Student's 95 % interval.
 

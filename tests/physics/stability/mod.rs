@@ -195,6 +195,25 @@ fn a_step_in_pieces_is_one_step_that_keeps_the_balance_of_energy() {
     assert!(touched, "it has bounced");
 }
 
+#[test]
+fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
+    for stepper in [Stepper::Moreau, Stepper::Range] {
+        let mut scene = built_in("pile").expect("a scene");
+        scene.stepper = stepper;
+        scene.parameters.time_step_secs = 0.1;
+        let travel = scene.gravity.magnitude() * 0.1 * 0.1 / scene.mean_diameter;
+        let mut sweeps_in = |pieces: f64| {
+            scene.remedies.max_travel = travel / (pieces - 0.5);
+            // Whatever is asked of them, solves are short.
+            scene.solver = SolverSettings { max_sweeps: 1, ..solved_by(Method::Nsgs, 1e-9) };
+            start(&scene).step().expect("a finite state").sweeps
+        };
+        let [ten, hundred, many] = [10.0, 100.0, 20_000.0].map(&mut sweeps_in);
+        assert!(ten >= 10 && hundred > 2 * ten, "{stepper}: {ten} and {hundred} sweeps");
+        assert_eq!(many, hundred, "{stepper}: work");
+    }
+}
+
 /// What no remedy mends: places that have no digits left (so far out they are 2·10⁻³ d apart), and
 /// contacts that slide open. Each step along a curved surface opens a gap by (Δt v_t)²/2d; below the
 /// tolerance it is neither closed nor does it count, until all contacts are beyond it at once.

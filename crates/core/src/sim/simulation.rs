@@ -95,8 +95,8 @@ impl Simulation {
     /// Takes one step.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] where a position or velocity is no longer a number; the state is then
-    /// left as it is, for looking at.
+    /// [`Error::NonFinite`] where a position, velocity or the kinetic energy is no longer a number; the
+    /// state is then left as it is, for looking at.
     pub fn step(&mut self) -> Result<&Observables> {
         self.become_of(Some(self.settings.stepper));
         let mut memory = std::mem::take(&mut self.memory);
@@ -181,7 +181,8 @@ impl Simulation {
     }
 
     fn look(&mut self) -> Result<&Observables> {
-        let finite = self.state.is_finite();
+        // Speeds whose squares no number holds are as good as none: nothing is told of what they do.
+        let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
         let State { world, candidates, .. } = &self.state;
         let features = candidates.features();
         self.watch.look(world, features, world.has_motion(), &mut self.observables, finite);

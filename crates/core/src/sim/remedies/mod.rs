@@ -57,8 +57,8 @@ settings! {
             ),
         }
         max_travel: f64 = 0.0, "max-travel" ("D"),
-            "Cut steps into pieces in which no grain moves further than this, in diameters; 0 \
-             never does", {
+            "Cut steps into pieces in which no grain moves further than this, in diameters, but \
+             into 100 at the most; 0 never does", {
             allowed: "a finite number of diameters ≥ 0; 0 never cuts a step",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
@@ -151,8 +151,8 @@ pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings
 /// Furthest way of a grain in a piece where the preset `robust` asks, in d: half of what could jump a wall.
 const ROBUST_TRAVEL: f64 = 0.25;
 
-/// Most pieces of a step: a grain that is faster still is lost anyhow, and the step has to end.
-const MOST_PIECES: f64 = 1000.0;
+/// Most pieces of a step: more would be a step of another order than the one asked for.
+const MOST_PIECES: f64 = 100.0;
 
 /// Pieces of the next step: 1 unless grains are too fast for it.
 pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
