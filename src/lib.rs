@@ -46,6 +46,13 @@ const VERSION: &str = env!("SLUMP_VERSION");
 #[doc = include_str!("../docs/rust.md")]
 struct BookOnRust;
 
+/// A clock that a page has, too.
+#[cfg(not(target_arch = "wasm32"))]
+use std::time::Instant;
+/// A clock that a page has, too.
+#[cfg(target_arch = "wasm32")]
+use web_time::Instant;
+
 mod film;
 mod headless;
 pub mod live;

@@ -8,7 +8,6 @@ use std::time::Duration;
 use egui::Context;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
-use web_time::Instant;
 
 use super::budget;
 use super::export::STATE_ENDING;
@@ -16,6 +15,7 @@ use super::lessons::LESSONS;
 use super::session::{SESSION_ENDING, open_session};
 use super::sharing::RunLink;
 use super::state::AppState;
+use crate::Instant;
 use crate::config::{Config, SavedState, SceneSource};
 use crate::error::Result;
 use crate::live::{

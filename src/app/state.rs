@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 use egui::{Color32, Rect, Ui};
-use web_time::Instant;
 
 use super::camera::SceneCamera;
 use super::data_export::DataPanel;
@@ -22,6 +21,7 @@ use super::preferences::Preferences;
 use super::session::arrangement_of;
 use super::theme;
 use super::work::Work;
+use crate::Instant;
 use crate::config::Config;
 use crate::error::Result;
 use crate::live::{Command, Controls, Live, LiveFrame, WorldFrame};

@@ -10,8 +10,8 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use egui::Ui;
-use web_time::Instant;
 
+use crate::Instant;
 use crate::error::{Error, Result};
 use crate::live::receive_within;
 

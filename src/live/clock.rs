@@ -2,9 +2,8 @@
 
 use std::time::Duration;
 
-use web_time::Instant;
-
 use super::Pace;
+use crate::Instant;
 
 /// A run that is further behind its pace than this does not try to make up for it.
 const MOST_LAG: Duration = Duration::from_millis(100);

@@ -6,13 +6,13 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
 
 use triple_buffer::Input;
-use web_time::Instant;
 
 use super::clock::Clock;
 use super::{
     Command, LiveFrame, LiveOptions, LiveStart, LoadingProgress, Pace, RunHistory, StartSource,
     WorldFrame,
 };
+use crate::Instant;
 use crate::error::Error;
 use crate::sim::{Settings, Surroundings};
 

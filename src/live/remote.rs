@@ -14,7 +14,6 @@ use std::time::Duration;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use triple_buffer::{Output, triple_buffer};
-use web_time::Instant;
 
 use super::curve::CurveChange;
 use super::engine::Engine;
@@ -22,6 +21,7 @@ use super::{
     Command, Curve, LiveFrame, LiveOptions, LiveStart, PastRun, StartSource, StartTaker, Taker,
     WorldHistory,
 };
+use crate::Instant;
 use crate::error::{Error, Result};
 
 /// A frame that was not seen is followed by another after this time: while a start is made nothing is taken in.

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use web_time::Instant;
 
 use super::stored_moments::StoredMoments;
 use super::{Curve, WorldRecord};
+use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Tally};
 

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use web_time::Instant;
-
 use super::runs::{Band, SlumpSeries, scene_of, slump};
+use crate::Instant;
 use crate::app::opening::settled_part;
 use crate::error::{Error, Result};
 use crate::live::LiveStart;

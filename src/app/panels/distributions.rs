@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use egui::{RichText, Ui};
 use egui_plot::{Bar, BarChart};
-use web_time::Instant;
 
+use crate::Instant;
 use crate::app::opening::TakenRun;
 use crate::app::plots::bare_plot;
 use crate::app::state::AppState;

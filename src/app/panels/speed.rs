@@ -3,8 +3,8 @@
 
 use egui::{Color32, RichText, Ui};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
-use web_time::Instant;
 
+use crate::Instant;
 use crate::app::opening::TakenRun;
 use crate::app::plots::plot_with_axes;
 use crate::app::state::AppState;

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::{Align2, RichText, Ui};
-use web_time::Instant;
 
 use super::grain::compact;
 use super::status::alarms;
+use crate::Instant;
 use crate::app::IS_PAGE;
 use crate::app::budget::FAST;
 use crate::app::ensemble::on_idle_cores;

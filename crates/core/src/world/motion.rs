@@ -204,7 +204,7 @@ pub(super) fn within(speed: f64, left: Option<f64>, secs: f64) -> f64 {
 
 /// The mean rate of sin(2πft + φ) between two times, 1/s.
 fn sine_rate(frequency_hz: f64, phase: f64, times: [f64; 2], secs: f64) -> f64 {
-    let [from, to] = times.map(|time| (TAU * frequency_hz * time + phase).sin());
+    let [from, to] = times.map(|time| libm::sin(TAU * frequency_hz * time + phase));
     (to - from) / secs
 }
 
@@ -328,7 +328,7 @@ impl RigidVelocity {
 
     pub(crate) fn carry(&self, secs: f64) -> Carry {
         let angle = secs * self.spin;
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         Carry { by: secs * self.velocity, angle, pivot: self.pivot, turn: DVec2::new(cos, sin) }
     }
 }

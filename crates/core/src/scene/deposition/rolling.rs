@@ -236,7 +236,7 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
         DVec2::new(side * from.x, from.y)
     };
     let now = mirrored(centre);
-    let now = now.x.atan2(now.y);
+    let now = libm::atan2(now.x, now.y);
     let mut first = (FRAC_PI_2, Obstacle::Nothing);
     let mut meet = |angle: f64, met| {
         if angle < first.0 {
@@ -245,11 +245,11 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
     };
     let to_wall = (deposit.half_width - radius - side * below.position.x) / reach;
     if to_wall < 1.0 {
-        meet(to_wall.max(-1.0).asin(), Obstacle::Wall);
+        meet(libm::asin(to_wall.max(-1.0)), Obstacle::Wall);
     }
     let to_floor = (deposit.floor + radius - below.position.y) / reach;
     if to_floor > 0.0 {
-        meet(to_floor.min(1.0).acos(), Obstacle::Floor);
+        meet(libm::acos(to_floor.min(1.0)), Obstacle::Floor);
     }
     let end = below.position + DVec2::new(side * reach, 0.0);
     let way = [centre.min(end), centre.max(end)];
@@ -263,7 +263,7 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
             / (2.0 * reach * distance);
         // What it would but graze it rolls past.
         if cosine.abs() < 1.0 - GRAZING {
-            let angle = there.x.atan2(there.y) - cosine.acos();
+            let angle = libm::atan2(there.x, there.y) - libm::acos(cosine);
             // The first time at or after now, but for rounding.
             let ahead = (angle - now + ROUNDING).rem_euclid(TAU) - ROUNDING;
             meet(now + ahead, Obstacle::Disc(index));

@@ -43,7 +43,7 @@ pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     let top = |grain: &Grain| grain.position.y + grain.radius;
     let aspect = scene.grains.iter().map(top).fold(0.0, f64::max) / (half * DIAMETER);
     // Beyond the longest run-out that columns are known for.
-    let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * aspect.powf(0.7)));
+    let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * libm::pow(aspect, 0.7)));
     scene.fixed_discs = rough_base(2.0 * reach, DIAMETER);
     let gate = |side: f64| half_space(DVec2::new(side * half, 0.0), DVec2::new(-side, 0.0));
     scene.boundaries = vec![floor(), gate(-1.0), gate(1.0)];

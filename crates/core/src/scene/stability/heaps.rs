@@ -129,7 +129,7 @@ const GROUND: f64 = 0.5;
 /// what the solver leaves grow until the arch rolls aside, after about 0.7 s. What is measured is over
 /// long before.
 pub fn arch() -> Scene {
-    let radius = 0.5 * (1.0 - TOUCH) / FRAC_PI_8.sin();
+    let radius = 0.5 * (1.0 - TOUCH) / libm::sin(FRAC_PI_8);
     let place = |eighth: u8| radius * DVec2::from_angle(f64::from(eighth) * FRAC_PI_4);
     let stones = [1, 2, 3].map(place).map(|centre| disc(centre.x, centre.y));
     let mut scene = dry("arch", stones.into());

@@ -86,7 +86,7 @@ impl SpringDashpot {
     pub fn critical_time_step_secs(&self, effective_mass: f64, neighbours: f64) -> f64 {
         let frequency = (neighbours * self.stiffness / effective_mass).sqrt();
         let damping_ratio = self.damping_ratio * neighbours.sqrt();
-        2.0 / frequency / (damping_ratio.hypot(1.0) + damping_ratio)
+        2.0 / frequency / (libm::hypot(damping_ratio, 1.0) + damping_ratio)
     }
 
     /// t_c, s, of two discs of that effective mass (kg) that meet and do not cohere.
@@ -136,8 +136,8 @@ fn damping_ratio(restitution: f64) -> f64 {
 
 fn restitution_of(damping_ratio: f64) -> f64 {
     match angle_and_root(damping_ratio) {
-        Some((angle, root)) => (-2.0 * damping_ratio * angle / root).exp(),
-        None => (-2f64).exp(),
+        Some((angle, root)) => libm::exp(-2.0 * damping_ratio * angle / root),
+        None => libm::exp(-2.0),
     }
 }
 
@@ -146,7 +146,8 @@ fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
     // As a product: near 1 the difference of squares would lose its digits.
     let root = ((1.0 - damping_ratio) * (1.0 + damping_ratio)).abs().sqrt();
     // From the root for the same reason.
-    let angle = if damping_ratio < 1.0 { root.atan2(damping_ratio) } else { root.asinh() };
+    let angle =
+        if damping_ratio < 1.0 { libm::atan2(root, damping_ratio) } else { libm::asinh(root) };
     (root != 0.0).then_some((angle, root))
 }
 

@@ -303,7 +303,7 @@ impl Shocks {
             let (i, j) = grains(problem, number);
             for grain in std::iter::once(i).chain(j) {
                 let [x, y, _] = bodies[grain].gain;
-                let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
+                let rests = touches && speed.abs() <= RESTS_BELOW * libm::hypot(x, y);
                 bodies[grain].is_supported |= rests || is_cohesive && is_bonded;
             }
             // The step proper stops what comes to a wall that gives way (see the module).
