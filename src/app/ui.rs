@@ -13,6 +13,8 @@ use crate::live::Command;
 
 /// Width of the sidebar, points.
 const SIDEBAR: f32 = 364.0;
+/// In less width than this, points, a page of the sidebar takes the place of all else, as on a telephone.
+const NARROW: f32 = 600.0;
 /// Height of the plots, points.
 const PLOTS: f32 = 150.0;
 
@@ -30,6 +32,14 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     act_on_keys(&context, state);
 
     fill(ui, ui.max_rect(), ui.visuals().panel_fill);
+    let has_page = state.preferences.page.is_some() && !state.preferences.folded;
+    if has_page && ui.max_rect().width() < NARROW {
+        bar(Panel::top("lesson")).show(ui, |ui| lessons::show(ui, state));
+        bar(Panel::bottom("status")).show(ui, |ui| status::show(ui, state));
+        let frame = Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 });
+        CentralPanel::default().frame(frame).show(ui, |ui| sidebar(ui, state));
+        return;
+    }
     if !state.preferences.folded {
         bars(ui, state);
     }
@@ -45,10 +55,16 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     help::show(ui, state);
 }
 
+fn tight() -> Frame {
+    Frame::new().inner_margin(Margin::symmetric(8, 4))
+}
+
+fn bar(panel: Panel) -> Panel {
+    panel.frame(tight()).resizable(false)
+}
+
 /// All that stands around the scene.
 fn bars(ui: &mut Ui, state: &mut AppState) {
-    let tight = Frame::new().inner_margin(Margin::symmetric(8, 4));
-    let bar = |panel: Panel| panel.frame(tight).resizable(false);
     bar(Panel::top("lesson")).show(ui, |ui| lessons::show(ui, state));
     let mut is_open = state.preferences.page.is_some();
     Panel::right("sidebar")
@@ -62,7 +78,7 @@ fn bars(ui: &mut Ui, state: &mut AppState) {
     bar(Panel::bottom("status")).show(ui, |ui| status::show(ui, state));
     if state.preferences.plots {
         Panel::bottom("plots")
-            .frame(tight)
+            .frame(tight())
             .resizable(true)
             .default_size(PLOTS)
             .size_range(100.0..=600.0)

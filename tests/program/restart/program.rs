@@ -215,7 +215,7 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
                 break;
             }
             // As if it had been killed while the animation was given its name.
-            write(&stopped.path().join(".a.gif.Ab12Cd.part"), "half");
+            write(stopped.path().join(".a.gif.Ab12Cd.part"), "half");
             went_on += 1;
             kills += 1;
             assert!(kills < 40, "{name}: it does not come to its end");
