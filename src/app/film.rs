@@ -55,7 +55,7 @@ pub(crate) struct FilmOrder {
 }
 
 impl FilmOrder {
-    /// Makes it of runs that are on their way, one a world. Says what became of it.
+    /// Makes it of a run a world; of fewer, where it was given up before they came, none. Says what became of it.
     pub(crate) fn make(self, runs: &[TakenRun], reporter: &Reporter) -> Result<String> {
         let (format, count) = (self.format, self.picture.worlds.len());
         let made = if runs.len() == count { self.write(runs, reporter)? } else { None };

@@ -4,7 +4,7 @@
 use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui};
 use serde::{Deserialize, Serialize};
 
-use super::IS_PAGE;
+use super::IN_BROWSER;
 use super::opening::Opening;
 use super::panels::Page;
 use super::preferences::Preferences;
@@ -95,7 +95,7 @@ fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
 pub const LESSONS: [Lesson; 7] = [
     Lesson {
         title: "The time step glues",
-        watch: if IS_PAGE {
+        watch: if IN_BROWSER {
             "One pile twice, with the same cohesion. Only the solver's time step differs: 0.1 ms and 5 ms. Release, \
              and watch the slump. The mean of many piles differs likewise."
         } else {

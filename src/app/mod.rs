@@ -31,7 +31,7 @@ mod window;
 mod work;
 
 /// True in a browser, which has neither files nor threads nor programs beside it.
-const IS_PAGE: bool = cfg!(target_arch = "wasm32");
+const IN_BROWSER: bool = cfg!(target_arch = "wasm32");
 
 pub use canvas::Canvas;
 pub use data_export::DataChoices;

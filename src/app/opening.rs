@@ -9,6 +9,7 @@ use egui::Context;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::IN_BROWSER;
 use super::budget;
 use super::export::STATE_ENDING;
 use super::lessons::LESSONS;
@@ -294,7 +295,7 @@ fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
 /// Opens the last file that was dropped in this frame. A page has to wait for its content.
 pub(super) fn take_dropped_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
-    let Some(file) = dropped.filter(|_| cfg!(not(target_arch = "wasm32"))) else { return };
+    let Some(file) = dropped.filter(|_| !IN_BROWSER) else { return };
     let path = file.path();
     match opening_of(path) {
         Some(Opening::File(path)) => state.load_saved(&path),

@@ -3,7 +3,7 @@
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 
 use super::grain::compact;
-use crate::app::IS_PAGE;
+use crate::app::IN_BROWSER;
 use crate::app::data_export::{DataChoices, DataOrder};
 use crate::app::state::AppState;
 use crate::app::work::{Reporter, Work};
@@ -15,7 +15,7 @@ const EVERY: [f64; 2] = [1e-9, 1e9];
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, state));
-    if IS_PAGE {
+    if IN_BROWSER {
         let text = "Files are downloads. A saved run, a session or a scene opens where it is dropped on the page.";
         ui.label(RichText::new(text).weak());
         return;

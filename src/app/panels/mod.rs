@@ -22,7 +22,7 @@ pub(super) mod trust;
 use egui::{CollapsingHeader, RichText, Ui};
 use serde::{Deserialize, Serialize};
 
-use super::IS_PAGE;
+use super::IN_BROWSER;
 use super::state::AppState;
 
 pub use front::FRONT_SETTINGS;
@@ -76,7 +76,7 @@ impl Page {
                 ui.separator();
                 solver::show(ui, state);
                 // It would keep a page waiting for seconds.
-                if !IS_PAGE {
+                if !IN_BROWSER {
                     folded(ui, state, "Speed and accuracy", speed::show);
                 }
             }
@@ -89,7 +89,7 @@ impl Page {
             }
             Self::Look => see::look(ui, state),
             Self::Save => {
-                if !IS_PAGE {
+                if !IN_BROWSER {
                     see::folder(ui, state);
                 }
                 see::pictures(ui, state);

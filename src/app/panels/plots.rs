@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::IS_PAGE;
+use crate::app::IN_BROWSER;
 use crate::app::export::{free_path, write_table};
 use crate::app::plots::{PlotData, WorldCurve, draw};
 use crate::app::state::AppState;
@@ -104,7 +104,8 @@ pub(super) fn choices(ui: &mut Ui, state: &mut AppState) {
 fn files(ui: &mut Ui, state: &mut AppState) {
     let stem = format!("{}-curves", super::see::file_stem(state));
     // A page must not wait for a device that draws.
-    if !IS_PAGE && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
+    if !IN_BROWSER
+        && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
     {
         let data = data(ui, state);
         let size = state.preferences.picture_size;

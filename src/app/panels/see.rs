@@ -6,7 +6,7 @@ use egui::{ComboBox, RichText, ThemePreference, Ui};
 use glam::DVec2;
 
 use super::scene::{columns, shared_style, view};
-use crate::app::IS_PAGE;
+use crate::app::IN_BROWSER;
 use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
@@ -113,7 +113,7 @@ fn films(ui: &mut Ui, state: &mut AppState) {
             (FilmFormat::Gif, "Save GIF", None, gif_hint),
         ];
         // A page has no ffmpeg.
-        for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IS_PAGE)) {
+        for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IN_BROWSER)) {
             let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
             let save = ui.add_enabled(is_ready && missing.is_none(), egui::Button::new(name));
             state.note_control(name, save.rect);

@@ -39,7 +39,7 @@ pub(crate) struct StepRace {
     work: Option<Work<Vec<RaceCurve>>>,
 }
 
-/// Has all methods solve the step that follows the moment of a run that is on its way.
+/// Has all methods solve the step that follows the moment of a run, where it was not given up before that came.
 fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Vec<RaceCurve>> {
     let Some(run) = run else { return Ok(Vec::new()) };
     let mut curves = Vec::new();

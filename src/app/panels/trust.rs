@@ -9,7 +9,7 @@ use egui::{Align2, RichText, Ui};
 use super::grain::compact;
 use super::status::alarms;
 use crate::Instant;
-use crate::app::IS_PAGE;
+use crate::app::IN_BROWSER;
 use crate::app::budget::FAST;
 use crate::app::ensemble::on_idle_cores;
 use crate::app::state::AppState;
@@ -168,7 +168,7 @@ fn solved(world: &WorldFrame) -> Vec<String> {
 
 /// What the error budget says, or how far it is.
 fn budget(ui: &mut Ui, state: &mut AppState) {
-    if IS_PAGE {
+    if IN_BROWSER {
         let text = "A page has no idle cores: slump budget, with the command line of this run, computes its error budget.";
         ui.label(RichText::new(text).weak());
         return;
@@ -200,7 +200,7 @@ fn follow(ui: &Ui, state: &mut AppState) {
         budget.work = None;
         budget.failure = outcome.err().map(|error| error.to_string());
     }
-    if IS_PAGE {
+    if IN_BROWSER {
         return;
     }
     let line = state.command_line();

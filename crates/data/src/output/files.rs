@@ -166,9 +166,7 @@ impl Destination {
         }
         Err(Error::file(path, "is a symbolic link that leads back to itself"))
     }
-}
 
-impl Destination {
     /// What is written to until it is whole; what is no plain file at once.
     fn draft(&self) -> std::io::Result<DraftFile> {
         #[cfg(not(target_arch = "wasm32"))]
