@@ -11,7 +11,8 @@ use super::preferences::{Preferences, StoredWindow};
 use super::sharing::{RunLink, set_link_start};
 use super::state::AppState;
 use super::{theme, told};
-use crate::live::{Live, LiveOptions, Post, RemoteEngine};
+use crate::error::Result;
+use crate::live::{Live, LiveOptions, Post, RemoteEngine, StartSource};
 use crate::output::give_file;
 pub use crate::output::written_files;
 
@@ -60,6 +61,16 @@ pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
     let Some(opening) = opening_of(&path) else { return state.warn(refused_file(&path)) };
     give_file(path.clone(), bytes.clone());
     state.open(Opening::With { path, bytes, opening: Box::new(opening) });
+}
+
+/// The hash of the state that the first world of a link comes to, computed here and now.
+///
+/// # Errors
+/// Says what is wrong with the link.
+pub fn state_of(link: &str) -> Result<String> {
+    let start = Box::new(Opening::Link(link.to_owned())).make(&mut |_| true)?;
+    let world = start.history.as_ref().and_then(|history| history.worlds().first());
+    Ok(world.map_or(&start.simulation, |world| &world.simulation).snapshot().state_hash())
 }
 
 /// State of page and run as JSON, for tests.

@@ -365,6 +365,11 @@ impl RunHistory {
         Ok(Self { present: LiveRun { worlds, ..LiveRun::default() }, ..Self::default() })
     }
 
+    /// The worlds of the present run.
+    pub fn worlds(&self) -> &[WorldHistory] {
+        &self.present.worlds
+    }
+
     /// True if one that was read holds together.
     pub fn is_sound(&self) -> bool {
         let is_sound = |run: &LiveRun| {

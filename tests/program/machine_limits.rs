@@ -24,8 +24,11 @@ fn without_threads_what_needs_them_is_refused_and_what_does_not_runs() {
         let said = sentence(&mut without_threads(line, "out"));
         assert!(said.contains("the number of threads is too high"), "{line}: {said}");
     }
-    let frames = "--headless --scene cradle --duration 0.1 --renderer cpu --size 16x9 --frames";
-    succeed(&mut without_threads(frames, "f"));
+    for (option, out) in [("--frames", "f"), ("--gif", "a.gif"), ("--video", "v.mp4")] {
+        let line = "--headless --scene cradle --duration 0.1 --renderer cpu --size 16x16";
+        succeed(&mut without_threads(&format!("{line} {option}"), out));
+        assert!(at(out).exists(), "{option}");
+    }
 }
 
 #[test]

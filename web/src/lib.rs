@@ -52,6 +52,15 @@ impl Engine {
     }
 }
 
+/// The hash of the state that a link's run comes to, computed here and now, for programs without a page.
+///
+/// # Errors
+/// Says what is wrong with the link.
+#[wasm_bindgen]
+pub fn state_of(link: &str) -> Result<String, JsError> {
+    browser::state_of(link).map_err(|error| JsError::new(&error.to_string()))
+}
+
 /// Files that were dropped, once they are read.
 type Dropped = Rc<RefCell<Vec<(PathBuf, Vec<u8>)>>>;
 
@@ -60,7 +69,7 @@ type Dropped = Rc<RefCell<Vec<(PathBuf, Vec<u8>)>>>;
 pub struct Page {
     answers: Sender<Vec<u8>>,
     context: Context,
-    told: Rc<RefCell<String>>,
+    state: Rc<RefCell<AppState>>,
 }
 
 #[wasm_bindgen]
@@ -74,7 +83,9 @@ impl Page {
 
     /// State of page and run as JSON, for tests.
     pub fn told(&self) -> String {
-        self.told.borrow().clone()
+        let (size, scale) = (self.context.content_rect().size(), self.context.pixels_per_point());
+        let pixels = [size.x * scale, size.y * scale].map(|side| side as u32);
+        browser::told(&self.state.borrow(), pixels, scale)
     }
 }
 
@@ -90,9 +101,8 @@ pub async fn open(
 ) -> Result<Page, JsValue> {
     console_error_panic_hook::set_once();
     let (answers, inbox) = channel();
-    let context: Rc<RefCell<Option<Context>>> = Rc::default();
-    let told: Rc<RefCell<String>> = Rc::default();
-    let (its_context, its_told) = (Rc::clone(&context), Rc::clone(&told));
+    let begun: Rc<RefCell<Option<(Context, Rc<RefCell<AppState>>)>>> = Rc::default();
+    let told = Rc::clone(&begun);
     let options = eframe::WebOptions { dithering: false, ..eframe::WebOptions::default() };
     let make = move |creation: &eframe::CreationContext<'_>| {
         if let Some(target) = &creation.wgpu_render_state {
@@ -100,23 +110,22 @@ pub async fn open(
             browser::prepare(&mut target.renderer.write().callback_resources, format);
         }
         let live = Live::remote(Box::new(slump_ask), inbox);
-        let state = browser::begin(live, &stored, &address, &creation.egui_ctx);
-        *its_context.borrow_mut() = Some(creation.egui_ctx.clone());
         let context = creation.egui_ctx.clone();
-        let dropped = Dropped::default();
+        let state = browser::begin(live, &stored, &address, &context);
+        let state = Rc::new(RefCell::new(state));
+        *told.borrow_mut() = Some((context.clone(), Rc::clone(&state)));
         let app: Box<dyn eframe::App> =
-            Box::new(Laboratory { state, context, told: its_told, dropped });
+            Box::new(Laboratory { state, context, dropped: Dropped::default() });
         Ok(app)
     };
     eframe::WebRunner::new().start(canvas, options, Box::new(make)).await?;
-    let context = context.borrow().clone().unwrap_or_default();
-    Ok(Page { answers, context, told })
+    let (context, state) = begun.take().ok_or("the browser has not begun to draw")?;
+    Ok(Page { answers, context, state })
 }
 
 struct Laboratory {
-    state: AppState,
+    state: Rc<RefCell<AppState>>,
     context: Context,
-    told: Rc<RefCell<String>>,
     dropped: Dropped,
 }
 
@@ -133,7 +142,7 @@ impl Laboratory {
             });
         }
         for (path, bytes) in self.dropped.take() {
-            browser::open_file(&mut self.state, path, bytes);
+            browser::open_file(&mut self.state.borrow_mut(), path, bytes);
         }
     }
 }
@@ -142,18 +151,15 @@ impl eframe::App for Laboratory {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.take_dropped_files(&context);
-        slump::app::ui(ui, &mut self.state);
+        slump::app::ui(ui, &mut self.state.borrow_mut());
         for (path, bytes) in browser::written_files() {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             slump_save(&name, bytes);
         }
-        let (size, scale) = (context.content_rect().size(), context.pixels_per_point());
-        let pixels = [size.x * scale, size.y * scale].map(|side| side as u32);
-        *self.told.borrow_mut() = browser::told(&self.state, pixels, scale);
     }
 
     fn save(&mut self, _: &mut dyn eframe::Storage) {
-        slump_store(&browser::stored(&self.state.preferences, &self.context));
+        slump_store(&browser::stored(&self.state.borrow().preferences, &self.context));
     }
 
     fn auto_save_interval(&self) -> std::time::Duration {

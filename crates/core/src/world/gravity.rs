@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{self, Error, Result};
 use crate::number::is_zero;
-use crate::world::motion::at_time;
+use crate::world::motion::{at_time, direction};
 use crate::world::motion_check::check_table;
 use crate::world::{Physics, World};
 
@@ -121,7 +121,7 @@ impl TurningGravity {
     /// The gravity of the next `secs`: that of the middle of them, so that a step's impulse of it errs by Δt³.
     pub(crate) fn in_next(&self, secs: f64) -> Gravity {
         let angle = self.turn.angle(self.turn.elapsed_secs + 0.5 * secs) + self.tilt;
-        Gravity::Uniform { acceleration: DVec2::from_angle(angle).rotate(self.listed) }
+        Gravity::Uniform { acceleration: direction(angle).rotate(self.listed) }
     }
 }
 

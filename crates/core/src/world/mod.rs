@@ -12,7 +12,7 @@ mod periodic_check;
 pub use boundary::{Boundary, Disc, Edge};
 pub use grains::{Grain, Grains};
 pub use gravity::{Gravity, GravityTurn, TurnCourse, TurningGravity};
-pub(crate) use motion::{Carry, RigidVelocity};
+pub(crate) use motion::{Carry, RigidVelocity, direction};
 pub use motion::{Drive, Motion, MotionCourse};
 pub(crate) use parameters::MAX_SUBSTEPS;
 pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};

@@ -202,6 +202,12 @@ pub(super) fn within(speed: f64, left: Option<f64>, secs: f64) -> f64 {
     left.map_or(speed, |left| speed.signum() * speed.abs().min(left / secs))
 }
 
+/// The unit vector at an angle, rad, with the same bits on every machine.
+pub(crate) fn direction(angle: f64) -> DVec2 {
+    let (sin, cos) = libm::sincos(angle);
+    DVec2::new(cos, sin)
+}
+
 /// The mean rate of sin(2πft + φ) between two times, 1/s.
 fn sine_rate(frequency_hz: f64, phase: f64, times: [f64; 2], secs: f64) -> f64 {
     let [from, to] = times.map(|time| libm::sin(TAU * frequency_hz * time + phase));
@@ -328,8 +334,7 @@ impl RigidVelocity {
 
     pub(crate) fn carry(&self, secs: f64) -> Carry {
         let angle = secs * self.spin;
-        let (sin, cos) = libm::sincos(angle);
-        Carry { by: secs * self.velocity, angle, pivot: self.pivot, turn: DVec2::new(cos, sin) }
+        Carry { by: secs * self.velocity, angle, pivot: self.pivot, turn: direction(angle) }
     }
 }
 

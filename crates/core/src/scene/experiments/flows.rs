@@ -7,7 +7,9 @@ use glam::DVec2;
 use super::{SPACING, lattice, moved, of_loose_grains, open_box, place, view};
 use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
 use crate::scene::{Scene, rough_base};
-use crate::world::{Boundary, Disc, Grain, GravityTurn, Motion, MotionCourse, TurnCourse};
+use crate::world::{
+    Boundary, Disc, Grain, GravityTurn, Motion, MotionCourse, TurnCourse, direction,
+};
 
 /// Grains that R₀ = H₀ = d takes.
 const GRAINS_OF_SQUARE: f64 = 2.09;
@@ -140,7 +142,7 @@ pub fn drum() -> Scene {
     };
     let mut scene = of_loose_grains("drum", (0..12).flat_map(columns).take(150));
     let on_rim = |k: usize, radius: f64| {
-        DIAMETER * radius * DVec2::from_angle(TAU * (k % DRUM_SIDES) as f64 / DRUM_SIDES as f64)
+        DIAMETER * radius * direction(TAU * (k % DRUM_SIDES) as f64 / DRUM_SIDES as f64)
     };
     let rough = |k: usize| Disc {
         position: on_rim(k, DRUM_RADIUS),

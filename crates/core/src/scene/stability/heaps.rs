@@ -8,7 +8,7 @@ use rand_pcg::Pcg64;
 
 use super::{DIAMETER, TOUCH, disc, dry, floor, half_space, view};
 use crate::scene::{Scene, rough_base};
-use crate::world::Disc;
+use crate::world::{Disc, direction};
 
 /// Where the falling disc starts, from the place of the highest, in diameters.
 const FALLING: [f64; 2] = [0.3, 1.5];
@@ -84,7 +84,7 @@ pub const STEEPEST_DEGREES: f64 = 30.0;
 pub fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "repose-angle".into();
-    let slope = DVec2::from_angle(-degrees.to_radians());
+    let slope = direction(-degrees.to_radians());
     for position in scene.grains.iter_mut().map(|grain| &mut grain.position) {
         *position = slope.rotate(*position);
     }
@@ -130,7 +130,7 @@ const GROUND: f64 = 0.5;
 /// long before.
 pub fn arch() -> Scene {
     let radius = 0.5 * (1.0 - TOUCH) / libm::sin(FRAC_PI_8);
-    let place = |eighth: u8| radius * DVec2::from_angle(f64::from(eighth) * FRAC_PI_4);
+    let place = |eighth: u8| radius * direction(f64::from(eighth) * FRAC_PI_4);
     let stones = [1, 2, 3].map(place).map(|centre| disc(centre.x, centre.y));
     let mut scene = dry("arch", stones.into());
     let abutment = |eighth: u8| Disc { position: DIAMETER * place(eighth), radius: 0.5 * DIAMETER };
