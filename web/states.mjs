@@ -24,9 +24,10 @@ function state_of_program(options) {
     const picture = ["--size", "64x48", "--renderer", "cpu", "--fps", "1"];
     const length = ["--duration", String(steps * time_step_secs)];
     const { status } = spawnSync(program, ["--headless", "--frames", folder, ...picture, ...options, ...length]);
-    if (status === 2) return null;
-    const [run] = JSON.parse(readFileSync(join(folder, "manifest.json"))).runs;
+    const manifest = status === 2 ? null : readFileSync(join(folder, "manifest.json"));
     rmSync(folder, { recursive: true });
+    if (manifest === null) return null;
+    const [run] = JSON.parse(manifest).runs;
     if (run.step !== steps && run.ended !== "not-finite") throw new Error(`${run.step} steps of ${steps}`);
     return run.last_state;
 }

@@ -182,12 +182,8 @@ fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
     let mut settings = robot.settings();
     settings.parameters.time_step_secs *= 0.5;
     robot.change(0, settings);
-    let begun = Instant::now();
-    while told(&robot) == before {
-        assert!(begun.elapsed() < Duration::from_secs(60), "the answer was of other settings");
-        robot.harness.step();
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    robot.harness.step();
+    assert_ne!(told(&robot), before, "the answer was of other settings");
 }
 
 #[test]
