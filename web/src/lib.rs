@@ -102,7 +102,7 @@ pub async fn open(
     console_error_panic_hook::set_once();
     let (answers, inbox) = channel();
     let begun: Rc<RefCell<Option<(Context, Rc<RefCell<AppState>>)>>> = Rc::default();
-    let told = Rc::clone(&begun);
+    let beginning = Rc::clone(&begun);
     let options = eframe::WebOptions { dithering: false, ..eframe::WebOptions::default() };
     let make = move |creation: &eframe::CreationContext<'_>| {
         if let Some(target) = &creation.wgpu_render_state {
@@ -113,7 +113,7 @@ pub async fn open(
         let context = creation.egui_ctx.clone();
         let state = browser::begin(live, &stored, &address, &context);
         let state = Rc::new(RefCell::new(state));
-        *told.borrow_mut() = Some((context.clone(), Rc::clone(&state)));
+        *beginning.borrow_mut() = Some((context.clone(), Rc::clone(&state)));
         let app: Box<dyn eframe::App> =
             Box::new(Laboratory { state, context, dropped: Dropped::default() });
         Ok(app)
