@@ -3,7 +3,7 @@
 // How it works: one instance a disc, one quad an instance, spanned here from the vertex index and
 // one pixel larger than the disc. The fragment measures its distance to the disc's edge and turns
 // it into the covered part of the pixel, so that edges are smooth without multisampling. Lengths
-// are pixels, positions are relative to the middle of the picture, y up. `src/render/disc.rs` holds
+// are pixels, positions are relative to the middle of the picture, y up. `src/render/primitives.rs` holds
 // the same formulas for the processor; change both.
 
 struct Frame {

@@ -3,7 +3,7 @@
 // How it works: one instance a link, one quad an instance, spanned here from the vertex index along
 // the link and one pixel larger than it. The fragment measures its distance to the segment and turns
 // it into the covered part of the pixel. Lengths are pixels, positions are relative to the middle of
-// the picture, y up. `src/render/link.rs` holds the same formulas for the processor; change both.
+// the picture, y up. `src/render/primitives.rs` holds the same formulas for the processor; change both.
 
 struct Frame {
     // Middle of the picture in the render target, pixels, y down.

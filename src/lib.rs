@@ -19,7 +19,7 @@
 //!
 //! Modules depend downward only: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`granular`] ← [`data`] ←
 //! [`scene`] ← [`render`], [`interchange`] ← the program, which is `study`, `headless`, the window (`app`, feature
-//! `window`) and `cli`; `tests/house` checks it. The physics knows no screen. Without the feature `gpu`
+//! `window`) and `cli`; `tests/program/house.rs` checks it. The physics knows no screen. Without the feature `gpu`
 //! pictures are drawn by the processor alone. The same from Python is a package of its own, in `python/`.
 
 #![cfg_attr(

@@ -331,7 +331,7 @@ impl ProblemCommand {
                 });
                 progress.finish();
                 let file = file?;
-                write_file(&out, file.text().as_bytes())?;
+                write_file(&out, file.text()?.as_bytes())?;
                 print_line(format_args!("{} contacts in {}", file.nc, out.display()));
                 Ok(())
             }

@@ -6,10 +6,10 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::output::DraftFile;
 
-/// Bytes of the largest page of a table.
+/// Bytes of the largest page of a table, and of the largest problem.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
-/// Bytes of the largest text that is read as a whole: TOML takes some 60 times as many, and 10,000 grains take one MiB.
-const MOST_OF_TEXT: u64 = 32 << 20;
+/// Bytes of the largest TOML, which takes some 60 times as many: 10,000 grains take one MiB.
+pub const MOST_OF_TOML: u64 = 32 << 20;
 /// Bytes of the longest line of a table.
 const MOST_OF_LINE: usize = 1 << 20;
 
@@ -34,15 +34,15 @@ fn open_plain(path: &Path, refuse: &dyn Fn(&dyn std::fmt::Display) -> Error) -> 
     DraftFile::open(path).map_err(|error| refuse(&error))
 }
 
-/// Reads a text that must be `form`.
+/// Reads a text that must be `form` and have `most` bytes.
 ///
 /// # Errors
 /// Names the file and what the system says, that it is no plain file, no text, or longer than any that is meant.
-pub fn read_text(path: &Path, form: &str) -> Result<String> {
+pub fn read_text(path: &Path, form: &str, most: u64) -> Result<String> {
     let mut text = String::new();
-    let read = open(path, form)?.take(MOST_OF_TEXT + 1).read_to_string(&mut text);
-    if text.len() as u64 > MOST_OF_TEXT {
-        let reason = format!("has more than {MOST_OF_TEXT} bytes, but must have no more");
+    let read = open(path, form)?.take(most + 1).read_to_string(&mut text);
+    if text.len() as u64 > most {
+        let reason = format!("has more than {most} bytes, but must have no more");
         return Err(Error::file(path, reason));
     }
     read.map(|_| text).map_err(|error| Error::unread(path, error, form))

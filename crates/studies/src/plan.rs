@@ -11,7 +11,7 @@ use toml::{Table, Value};
 use crate::config::{BaseScene, Config};
 use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
-use crate::input::read_text;
+use crate::input::{MOST_OF_TOML, read_text};
 
 /// More runs than this are a mistake rather than a wish: planned, run and listed they take some 2 kB
 /// each.
@@ -80,7 +80,7 @@ impl Study {
     /// # Errors
     /// Where the file cannot be read or says something that no study says.
     pub fn read(path: &Path, quick: bool) -> Result<Self> {
-        let text = read_text(path, FORM)?;
+        let text = read_text(path, FORM, MOST_OF_TOML)?;
         Self::parse(&text, path, quick)
     }
 

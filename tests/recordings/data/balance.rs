@@ -310,6 +310,29 @@ fn energies_close_as_columns_say() {
 }
 
 #[test]
+fn kinetic_energy_changes_by_four_works_whatever_moves() {
+    for &stepper in Stepper::ALL {
+        let mut worst = 0f64;
+        for of_case in CASES {
+            let Some(mut run) = case(stepper, of_case) else { continue };
+            let (mut missing, mut largest) = (0f64, 0f64);
+            for _ in 0..of_case.3 + of_case.4 as u64 {
+                let before = run.observables().kinetic_energy;
+                let now = run.step().expect("a finite state");
+                let works = now.normal_work + now.tangential_work + now.gravity_work;
+                let works = works + now.border_work.unwrap_or(0.0);
+                missing = missing.max((now.kinetic_energy - before - works).abs());
+                largest = largest.max(now.kinetic_energy);
+            }
+            worst = worst.max(missing / largest);
+        }
+        // The steps of avbd set places and take velocities from them.
+        let allowed = if stepper == Stepper::Avbd { 0.01..0.1 } else { 0.0..EXACT };
+        assert!(allowed.contains(&worst), "{stepper}: {worst}");
+    }
+}
+
+#[test]
 fn pieces_of_a_step_add_up_too() {
     let mut scene = scene("pile");
     scene.parameters.time_step_secs = 5e-3;

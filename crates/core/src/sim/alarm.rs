@@ -144,9 +144,7 @@ impl Watch {
         if !finite {
             observables.converged = false;
             self.raise(AlarmKind::NotFinite, observables, None);
-            return;
-        }
-        if self.unfinished_in_a_row >= STEPS_AT_LIMIT {
+        } else if self.unfinished_in_a_row >= STEPS_AT_LIMIT {
             self.raise(AlarmKind::SweepLimit, observables, None);
         }
         if observables.max_overlap > LARGEST_OVERLAP {

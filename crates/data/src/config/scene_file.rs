@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use crate::data::{parse_grains, read_grains};
 use crate::error::{Error, Result};
-use crate::input::read_text;
+use crate::input::{MOST_OF_TOML, read_text};
 use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
 use crate::world::Grain;
 
@@ -29,7 +29,7 @@ pub fn read_scene(path: &Path) -> Result<Scene> {
 /// The same but for the settling: a new pile is given as well, and the scene has its grains
 /// where they start from. Quick.
 pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
-    let text = read_text(path, FORM)?;
+    let text = read_text(path, FORM, MOST_OF_TOML)?;
     let scene = toml::from_str(&text).map_err(|error| {
         let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
         let place = line.map_or(String::new(), |line| format!("line {line}: "));

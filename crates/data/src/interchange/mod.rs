@@ -20,7 +20,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::input::read_text;
+use crate::input::{MOST_BYTES, read_text};
 use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
 
@@ -73,7 +73,7 @@ impl ProblemFile {
     /// # Errors
     /// In one sentence that names the file and what is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = read_text(path, FORM)?;
+        let text = read_text(path, FORM, MOST_BYTES)?;
         Self::parse(&text).map_err(|error| Error::file(path, error))
     }
 
@@ -101,9 +101,17 @@ impl ProblemFile {
     }
 
     /// The file's text. Numbers are as short as they can be and still read back bit for bit.
-    pub fn text(&self) -> String {
+    ///
+    /// # Errors
+    /// Where it has more bytes than are read.
+    pub fn text(&self) -> Result<String> {
         // Strings, numbers and lists of them have no way to fail.
-        serde_json::to_string(self).expect("a problem is always written") + "\n"
+        let text = serde_json::to_string(self).expect("a problem is always written") + "\n";
+        if text.len() as u64 > MOST_BYTES {
+            let field = "the length of the problem's file";
+            return Err(Error::value(field, text.len(), format!("at most {MOST_BYTES} bytes")));
+        }
+        Ok(text)
     }
 
     /// μ of each contact.
