@@ -20,7 +20,10 @@
 
 #![warn(missing_docs, unreachable_pub)]
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
-#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "what a test expects may differ in its last bits"))]
+#![cfg_attr(
+    test,
+    allow(clippy::disallowed_methods, reason = "what a test expects may differ in its last bits")
+)]
 
 pub mod contact;
 pub mod error;
