@@ -223,7 +223,7 @@ impl Simulation {
     /// The contact problem of the next step, as data that `solve` takes.
     fn next_problem<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let problem = problem_file_of(&self.run(py).simulation).map_err(exception)?;
-        parsed(py, &problem.text().map_err(exception)?)
+        parsed(py, &problem.text())
     }
 
     /// Forgets the rows of the steps so far.

@@ -331,7 +331,7 @@ impl ProblemCommand {
                 });
                 progress.finish();
                 let file = file?;
-                write_file(&out, file.text()?.as_bytes())?;
+                file.write(&out)?;
                 print_line(format_args!("{} contacts in {}", file.nc, out.display()));
                 Ok(())
             }

@@ -34,7 +34,7 @@ fn open_plain(path: &Path, refuse: &dyn Fn(&dyn std::fmt::Display) -> Error) -> 
     DraftFile::open(path).map_err(|error| refuse(&error))
 }
 
-/// Reads a text that must be `form` and have `most` bytes.
+/// Reads a text that must be `form` and have at most `most` bytes.
 ///
 /// # Errors
 /// Names the file and what the system says, that it is no plain file, no text, or longer than any that is meant.

@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::input::{MOST_BYTES, read_text};
+use crate::output::write_file;
 use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
 
@@ -77,6 +78,19 @@ impl ProblemFile {
         Self::parse(&text).map_err(|error| Error::file(path, error))
     }
 
+    /// Writes a problem file.
+    ///
+    /// # Errors
+    /// Where it would have more bytes than are read, or the system refuses.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let text = self.text();
+        if text.len() as u64 > MOST_BYTES {
+            let field = "the length of the problem's file";
+            return Err(Error::value(field, text.len(), format!("at most {MOST_BYTES} bytes")));
+        }
+        write_file(path, text.as_bytes())
+    }
+
     /// Reads the text of a problem file, or of one of Siconos', and checks it.
     ///
     /// # Errors
@@ -101,17 +115,9 @@ impl ProblemFile {
     }
 
     /// The file's text. Numbers are as short as they can be and still read back bit for bit.
-    ///
-    /// # Errors
-    /// Where it has more bytes than are read.
-    pub fn text(&self) -> Result<String> {
+    pub fn text(&self) -> String {
         // Strings, numbers and lists of them have no way to fail.
-        let text = serde_json::to_string(self).expect("a problem is always written") + "\n";
-        if text.len() as u64 > MOST_BYTES {
-            let field = "the length of the problem's file";
-            return Err(Error::value(field, text.len(), format!("at most {MOST_BYTES} bytes")));
-        }
-        Ok(text)
+        serde_json::to_string(self).expect("a problem is always written") + "\n"
     }
 
     /// μ of each contact.
