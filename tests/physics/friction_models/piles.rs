@@ -332,11 +332,16 @@ fn the_bound_on_the_velocities_is_what_world_data_make_it() {
     }
 }
 
+/// m/s. The largest of 4,500 steps of such piles was 0.35.
+const BOUND_PER_ROOT_OF_RESIDUAL: f64 = 0.5;
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
+    // The gap that the bound is the root of is impulses times what they err by. Of two solves the nearer one may have the
+    // larger bound: 1.8e-5 m/s with a residual of 0.9e-8, where one of 1.1e-8 had 1.6e-5.
     #[test]
-    fn the_bound_on_the_velocities_falls_with_the_tolerance(
+    fn the_bound_on_the_velocities_falls_with_the_root_of_the_residual(
         seed in 0u64..1000,
         bond in prop_oneof![Just(0.0), 0.0..50.0],
         restitution in 0.0..1.0,
@@ -348,15 +353,15 @@ proptest! {
         pile.solver = by_interior_point(model, 1e-9);
         let mut run = start(&pile);
         run.step().expect("a finite state");
-        let mut last = f64::INFINITY;
         for tolerance in [1e-2, 1e-5, 1e-8] {
             let mut next = run.clone();
             next.set_solver(by_interior_point(model, tolerance)).expect("proper settings");
             let row = *next.step().expect("a finite state");
             prop_assert!(row.converged, "{row:?} at {tolerance:e}");
-            let error = row.velocity_error;
-            prop_assert!(error <= last.max(1e-7), "{error:e} after {last:e}");
-            last = error;
+            let residual = row.model_residual.expect("a model of its own");
+            prop_assert!(residual <= tolerance, "{residual:e} at {tolerance:e}");
+            let (error, most) = (row.velocity_error, BOUND_PER_ROOT_OF_RESIDUAL * residual.sqrt());
+            prop_assert!(error <= most.max(1e-7), "{error:e} with a residual of {residual:e}");
         }
     }
 }
