@@ -224,6 +224,35 @@ fn a_problem_is_solved_again_after_it_fell_back() {
     }
 }
 
+/// A press: no velocities keep its grains out of each other, so that there is nothing to fall back on.
+#[test]
+fn a_step_of_many_pieces_looks_in_vain_for_what_it_falls_back_on_once() {
+    let radius = 5e-3;
+    let places = (0..8u32).map(|n| DVec2::new(f64::from(n % 2), 0.5 + 0.9 * f64::from(n / 2)));
+    let grains =
+        places.map(|place: DVec2| moving(2.0 * radius * place, radius, DVec2::ZERO)).collect();
+    let wall = |y: f64, up: f64| Boundary::Piston {
+        point: y * DVec2::Y,
+        normal: up * DVec2::Y,
+        speed: 1.0,
+        travel: 1.0,
+    };
+    let mut press = Scene {
+        boundaries: vec![wall(0.0, 1.0), wall(7.4 * radius, -1.0)],
+        stepper: Stepper::Range,
+        ..scene(UNTURNING, -G * DVec2::Y, parameters(100.0, 1e-2, 0.5, 0.5), grains)
+    };
+    let mut step = |fallback| {
+        press.solver = SolverSettings { max_sweeps: 40, fallback, ..to_residual(1e-9) };
+        *start(&press).step().expect("a finite state")
+    };
+    let [alone, with] = [Fallback::None, Fallback::Tresca].map(&mut step);
+    assert!(!with.converged && with.fell_back == Some(false), "{with:?}");
+    assert!(alone.sweeps > 16 * 40, "there are many problems: {alone:?}");
+    let further = with.factorisations;
+    assert!((1..=1_000).contains(&further), "{further} factorisations in vain");
+}
+
 fn by_interior_point(model: FrictionModel, tolerance: f64) -> SolverSettings {
     SolverSettings { friction_model: model, ..solved_by(Method::InteriorPoint, tolerance) }
 }

@@ -64,8 +64,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     /// Factorises in place.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx") && std::arch::is_x86_feature_detected!("fma")
-        {
+        if std::arch::is_x86_feature_detected!("avx") {
             // SAFETY: the processor has just been asked.
             unsafe { self.factorise_with_avx(elimination) };
             return;
@@ -75,7 +74,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
 
     /// The same operations in the same order, and so bitwise the same result, four at a time.
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx,fma")]
+    #[target_feature(enable = "avx")]
     fn factorise_with_avx(&mut self, elimination: &Elimination) {
         self.factorise_each(elimination);
     }
@@ -287,16 +286,6 @@ fn less_products<const D: usize, const N: usize>(
     left
 }
 
-#[cfg(target_arch = "wasm32")]
-use super::fused::multiply_add;
-
-/// a·b + c, rounded once, on every processor alike: those that have no such operation take longer.
-#[cfg(not(target_arch = "wasm32"))]
-#[inline(always)]
-fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
-    a.mul_add(b, c)
-}
-
 /// from − aᵀb.
 #[inline(always)]
 fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Padded<D>) {
@@ -304,7 +293,7 @@ fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Pad
     for (factors, entries) in a.0.iter().zip(&b.0) {
         for (to, factor) in result.0.iter_mut().zip(factors) {
             for column in 0..WIDTH {
-                to[column] = multiply_add(-factor, entries[column], to[column]);
+                to[column] -= factor * entries[column];
             }
         }
     }

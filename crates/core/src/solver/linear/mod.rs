@@ -3,8 +3,6 @@
 mod block_cholesky;
 mod block_lu;
 mod elimination;
-#[cfg(any(target_arch = "wasm32", test))]
-mod fused;
 
 pub(super) use self::block_cholesky::SymmetricBlockMatrix;
 pub(super) use self::block_lu::{Block, BlockMatrix, inertia};

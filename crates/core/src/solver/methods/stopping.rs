@@ -36,25 +36,28 @@ impl SolveReport {
         Self { converged: true, ..Self::default() }
     }
 
-    /// Counts another solve of the same step. The step has stalled where one of them has.
+    /// True where neither the method nor what it falls back on found a solution.
+    pub(crate) fn is_unsolved(&self) -> bool {
+        !(self.converged || self.fell_back)
+    }
+
+    /// Counts another solve of the same step. The step has stalled where one of them has, and has fallen back where none is
+    /// unsolved.
     pub fn add(&mut self, other: Self) {
-        let Self { sweeps, factorisations, converged, stalled, fell_back } = other;
-        self.sweeps += sweeps;
-        self.factorisations += factorisations;
-        self.converged &= converged;
-        self.stalled |= stalled;
-        self.fell_back |= fell_back;
+        let Self { sweeps, factorisations, .. } = *self;
+        self.add_beside(other);
+        self.sweeps = sweeps + other.sweeps;
+        self.factorisations = factorisations + other.factorisations;
     }
 
     /// Counts the solve of another island of the same step, which went beside this one.
     pub(crate) fn add_beside(&mut self, other: Self) {
-        let is_left = |one: &Self| !(one.converged || one.fell_back);
-        let is_any_left = is_left(self) || is_left(&other);
+        let is_any_unsolved = self.is_unsolved() || other.is_unsolved();
         self.sweeps = self.sweeps.max(other.sweeps);
         self.factorisations = self.factorisations.max(other.factorisations);
         self.converged &= other.converged;
         self.stalled |= other.stalled;
-        self.fell_back = (self.fell_back || other.fell_back) && !is_any_left;
+        self.fell_back = (self.fell_back || other.fell_back) && !is_any_unsolved;
     }
 
     /// The same with the work of solves that came before, and of whose outcome nothing is left.

@@ -27,7 +27,7 @@ use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Model, SolveReport, SolverSettings};
+use crate::solver::{Approach, Fallback, Model, SolveReport, SolverSettings};
 use crate::world::{FrictionCone, Parameters, World};
 
 pub(super) const INFO: StepperInfo = StepperInfo {
@@ -139,6 +139,7 @@ pub(super) fn advance<M: Model>(
     let settings = &Settings { solver: SolverSettings { model_solves, ..*solver }, ..*settings };
     let result = stage.in_pieces(substeps, settings, result, |stage, settings, result| {
         prepare(stage, settings);
+        let settings = &Settings { solver: rest_of(&settings.solver, result.report), ..*settings };
         if let Ok(piece) = try_step(stage, settings, memory, true) {
             result.add(piece);
         }
@@ -187,6 +188,13 @@ fn try_step<M: Model>(
     memory.shocks.shift(&mut stage.state.world);
     separate::<M>(stage.state);
     Ok(result)
+}
+
+/// The settings of what is left of a step. Where one of its problems had no solution under bounds of friction either, the
+/// step is unsolved, and to look for those of the others is in vain: that takes up to a thousand factorisations each.
+fn rest_of(settings: &SolverSettings, so_far: SolveReport) -> SolverSettings {
+    let fallback = if so_far.is_unsolved() { Fallback::None } else { settings.fallback };
+    SolverSettings { fallback, ..*settings }
 }
 
 /// The numbers of a step that its shocks and bonds hang on.
