@@ -4,8 +4,9 @@
 # It asks for Debian's rustc-web, cargo-web, rust-web-src and lld, and for wasm-bindgen
 # (cargo install wasm-bindgen-cli --version, that of web/Cargo.toml).
 set -euo pipefail
-cd "$(dirname "$0")"
-out=$(realpath -m "${1:-../target/page}")
+web=$(realpath "$(dirname "$0")")
+out=$(realpath -m "${1:-$web/../target/page}")
+cd "$web"
 target=$(realpath -m ../target/web)
 
 # The standard library is built with the page: Debian's rustc comes with its source.
