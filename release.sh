@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A release in a folder: ./release.sh [FOLDER]. An archive of the program, a Python wheel and their checksums, both tried
-# where nothing of this project is. FOLDER is target/release-archive unless it is given, and is made anew.
+# A release in a folder: ./release.sh [FOLDER]. An archive of the program, one of the page, a Python wheel and their
+# checksums. Program and wheel are tried where nothing of this project is, the page's states are held against the program's.
+# FOLDER is target/release-archive unless it is given, and is made anew. docs/page.md says what the page asks for.
 set -euo pipefail
 cd "$(dirname "$0")"
 out=$(realpath -m "${1:-target/release-archive}")
@@ -10,7 +11,7 @@ fail() {
     exit 1
 }
 
-for tool in cargo git python3 sha256sum tar unshare; do
+for tool in cargo git node python3 sha256sum tar unshare wasm-bindgen; do
     command -v "$tool" >/dev/null || fail "$tool is not on PATH, but must be"
 done
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
@@ -47,18 +48,26 @@ done
 for command in $("$program" help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p' | grep -v '^help$'); do
     "$program" man "$command" >"$packed/man/man1/slump-$command.1"
 done
-# Licences of all crates that are in the program or the wheel, word by word.
-cargo metadata --locked --format-version 1 --filter-platform "$host" >"$work/metadata.json"
+# Licences of all crates that are in the program, the wheel or the page, word by word.
+cargo metadata --locked --format-version 1 --filter-platform "$host" >"$work/program.json"
 cargo tree --locked -e normal --prefix none --format '{p}' -p slump -p slump-python >"$work/crates"
+of_page=(--locked --manifest-path web/Cargo.toml)
+cargo metadata "${of_page[@]}" --format-version 1 --filter-platform wasm32-unknown-unknown >"$work/page.json"
+cargo tree "${of_page[@]}" --target wasm32-unknown-unknown -e normal --prefix none --format '{p}' >>"$work/crates"
 python3 - "$work" <<'PYTHON' >"$packed/THIRD-PARTY-LICENCES.txt"
 import json, pathlib, sys
 
 work = pathlib.Path(sys.argv[1])
 used = {tuple(line.split()[:2]) for line in (work / "crates").read_text().splitlines()}
 beginnings = ("LICEN", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE", "UFL", "OFL")
+packages = {}
+for file in ("program.json", "page.json"):
+    for crate in json.loads((work / file).read_text())["packages"]:
+        packages[crate["name"], "v" + crate["version"]] = crate
 crates, texts = [], {}
-for crate in json.loads((work / "metadata.json").read_text())["packages"]:
-    if not crate["source"] or (crate["name"], "v" + crate["version"]) not in used:
+for known_as in sorted(used & packages.keys()):
+    crate = packages[known_as]
+    if not crate["source"]:
         continue
     name = f'{crate["name"]} {crate["version"]}'
     files = sorted(pathlib.Path(crate["manifest_path"]).parent.rglob("*"))
@@ -66,13 +75,19 @@ for crate in json.loads((work / "metadata.json").read_text())["packages"]:
     crates.append(f'{name}: {crate["license"]}' + ("" if files else " (no text comes with it)"))
     for file in files:
         texts.setdefault(file.read_text(errors="replace").strip(), {})[name] = None
-print("Crates that the program or the wheel is made of, with their licences; the texts that come with them stand below.\n")
+print("Crates that the program, the wheel or the page is made of, with their licences; the texts that come with them stand below.\n")
 print("\n".join(sorted(crates)))
 for text, names in texts.items():
     print("\n" + "-" * 80 + "\n" + ", ".join(names) + "\n\n" + text)
 PYTHON
 tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$secs" -c "$name" | gzip -9n >"$out/$name.tar.gz"
 cp "$packed/THIRD-PARTY-LICENCES.txt" CHANGELOG.md "$out"
+
+# The page, a folder of static files.
+web/build.sh "$work/page"
+node web/states.mjs "$work/page" "$program" || fail "the page comes to other states than the program"
+cp LICENSE-MIT LICENSE-APACHE "$packed/THIRD-PARTY-LICENCES.txt" "$work/page"
+tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$secs" -c page | gzip -9n >"$out/slump-$version-page.tar.gz"
 
 # The wheel. Maturin names the oldest Linux that it runs on, and asks for patchelf where it would have to bring libraries.
 python3 -m venv "$work/tools"

@@ -105,6 +105,10 @@ class Browser:
     def click(self, at):
         self.drag(at, at)
 
+    def set_offline(self, is_offline):
+        conditions = {"offline": is_offline, "latency": 0, "throughput": 0 if is_offline else -1}
+        self.command("/chromium/network_conditions", network_conditions=conditions)
+
     def picture(self, name):
         PICTURES.mkdir(parents=True, exist_ok=True)
         image = self.ask("GET", self.session + "/screenshot")
@@ -176,12 +180,26 @@ try:
     told = browser.told()
     browser.picture("link")
 
+    opened = told["state_hash"]
+    browser.command("/refresh")
+    told = browser.until("the link's run is there again", lambda told: told["step"] == STEPS)
+    assert told["state_hash"] == opened, "loaded anew, a link comes to another state"
+    print("loaded anew, the page comes to the same state")
+
+    # All that it needs is there: what follows asks nothing of the network.
+    browser.set_offline(True)
+    assert not browser.run("return navigator.onLine"), "the browser is not offline"
     left, top, right, bottom = told["controls"]["Δt"]
     before = told["parameters"]["time_step_secs"]
     at = (left + right) / 2, (top + bottom) / 2
     browser.drag(at, (left + 0.8 * (right - left), at[1]))
     told = browser.until("Δt is another", lambda told: told["parameters"]["time_step_secs"] != before)
-    print(f"Δt dragged from {before} s to {told['parameters']['time_step_secs']} s")
+    print(f"offline, Δt dragged from {before} s to {told['parameters']['time_step_secs']} s")
+    browser.click(middle(told, "release"))
+    step = told["step"]
+    browser.until("it runs offline", lambda told: told["step"] > step + 20)
+    browser.picture("offline")
+    browser.set_offline(False)
 
     logs = [entry for entry in browser.logs() if "favicon" not in entry]
     assert not logs, f"the console has errors: {logs}"
