@@ -22,7 +22,7 @@ use crate::config::{
 use crate::error::{Error, Result};
 use crate::live::WorldPlan;
 use crate::output::Texts;
-use crate::scene::SCENES;
+use crate::scene::SceneInfo;
 use crate::sim::Settings;
 
 /// What is said of a run that no command line makes.
@@ -249,9 +249,8 @@ impl RunLink {
 /// Refuses what starts from a file: whoever sends a link is not to choose what is opened here.
 fn check_names_no_file(source: &SceneSource) -> Result<()> {
     let SceneSource { scene, initial, .. } = source;
-    let is_known = |name: &String| SCENES.iter().any(|known| known.name == *name);
     match (scene, initial) {
-        (Some(name), _) if !is_known(name) => {
+        (Some(name), _) if SceneInfo::named(name).is_none() => {
             Err(Error::value("link: scene", name, "a built-in scene: links name no files"))
         }
         (_, Some(path)) => {

@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 use slump::scene::stability::{
     bounce, cantilever, column, heap, heap_of, lattice, mass_ratio, overlapped, squeeze,
 };
+use slump::scene::{SCENES, built_in};
 use slump::study::stability::{CHALLENGES, StabilityTable, StabilityVerdict};
 
 use crate::common::*;
@@ -52,6 +53,20 @@ fn every_verdict_is_that_of_the_table() {
     let (now, then) = (quick().cells.len(), committed.cells.len());
     assert_eq!(now, then, "the table has other rows; renew it: {RENEW}");
     assert!(changes.is_empty(), "{}\nIf that is right: {RENEW}", changes.join("\n"));
+}
+
+#[test]
+fn every_challenge_opens_a_scene_and_no_two_scenes_share_a_name() {
+    for challenge in &CHALLENGES {
+        assert!(built_in(challenge.name).is_ok(), "{} is no scene", challenge.name);
+    }
+    let mut names: Vec<_> =
+        SCENES.iter().flat_map(|scene| scene.also.iter().chain([&scene.name])).collect();
+    names.sort_unstable();
+    let many = names.len();
+    names.dedup();
+    assert_eq!((names.len(), many), (many, SCENES.len() + 9));
+    assert_eq!(built_in("sag").expect("a scene").name, "column");
 }
 
 #[test]

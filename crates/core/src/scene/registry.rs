@@ -18,6 +18,8 @@ words! {
 pub struct SceneInfo {
     /// Its name on the command line.
     pub name: &'static str,
+    /// What else it is called: challenges that have no scene of their own, but are of this one.
+    pub also: &'static [&'static str],
     /// What it is there for.
     pub group: SceneGroup,
     /// One line.
@@ -26,12 +28,25 @@ pub struct SceneInfo {
     pub make: fn() -> Result<Scene>,
 }
 
-/// Declares the built-in scenes, group by group: name, one line, and what makes it.
+impl SceneInfo {
+    /// The built-in scene of a name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        SCENES.iter().find(|scene| scene.name == name || scene.also.contains(&name))
+    }
+}
+
+/// Declares the built-in scenes, group by group: names, one line, and what makes it.
 macro_rules! scenes {
-    ($($Group:ident { $($name:literal, $summary:literal => $make:expr;)* })*) => {
+    ($($Group:ident { $($name:literal $(| $also:literal)*, $summary:literal => $make:expr;)* })*) => {
         /// All built-in scenes.
         pub const SCENES: &[SceneInfo] = &[$($(
-            SceneInfo { name: $name, group: SceneGroup::$Group, summary: $summary, make: || $make },
+            SceneInfo {
+                name: $name,
+                also: &[$($also),*],
+                group: SceneGroup::$Group,
+                summary: $summary,
+                make: || $make,
+            },
         )*)*];
     };
 }
@@ -40,7 +55,7 @@ scenes! {
     Paper {
         "pile", "cohesive grains on a rough base, 138 unless asked otherwise; at t = 0 the walls go (paper section 3)"
             => paper_pile();
-        "cradle", "three grains on a line, one falls on a bonded pair (paper section 4)" => Ok(cradle());
+        "cradle" | "shock", "three grains on a line, one falls on a bonded pair (paper section 4)" => Ok(cradle());
         "collision", "one grain dropped on a fixed one (paper section 2.2)" => Ok(collision());
     }
     Experiments {
@@ -60,7 +75,7 @@ scenes! {
         "incline", "300 grains in a box that is tilted until they flow" => Ok(experiments::incline());
     }
     Stability {
-        "column", "a column of 20 discs: does the floor carry them all?" => Ok(stability::column(20));
+        "column" | "sag", "a column of 20 discs: does the floor carry them all?" => Ok(stability::column(20));
         "mass-ratio", "a disc 1,000 times as heavy on a light one" => Ok(stability::mass_ratio(1e3));
         "chain", "a hanging chain at 1.2 times the Bond number that breaks it"
             => Ok(stability::hanging_chain(8, 1.2 * stability::breaking_bond(8)));
@@ -70,14 +85,15 @@ scenes! {
         "overlap", "two discs that overlap by a tenth at the start" => Ok(stability::overlapped(0.1));
         "squeeze", "25 discs in a box that is a hundredth too small" => Ok(stability::squeeze(1e-2));
         "moving-walls", "18 discs between two walls that move in: each has one place to be" => Ok(stability::press());
-        "logs", "a disc 20 times as large on two small ones" => Ok(stability::logs(20.0));
+        "logs" | "size-ratio" | "friction-limit", "a disc 20 times as large on two small ones" => Ok(stability::logs(20.0));
         "arch", "an arch of three discs at 1.05 times the least friction that holds it"
             => {
                 let mut scene = stability::arch();
                 scene.parameters.friction = 1.05 * stability::FRICTION_OF_ARCH;
                 Ok(scene)
             };
-        "repose", "a heap of 21 discs at 60 degrees, which stands still" => Ok(stability::heap(6));
+        "repose" | "rest" | "shuffle" | "size" | "sliders" | "time-step-switch",
+            "a heap of 21 discs at 60 degrees, which stands still" => Ok(stability::heap(6));
         "repose-angle", "the same heap on a slope of 29 degrees: from 30 on it must slide"
             => Ok(stability::heap_on_slope(6, 29.0));
         "far", "the heap of 21 discs, a thousand million diameters away" => Ok(stability::heap_far_away(6, 1e9));
@@ -109,7 +125,7 @@ pub(crate) fn scene_names() -> String {
 /// # Errors
 /// Where there is none of that name.
 pub fn built_in(name: &str) -> Result<Scene> {
-    let info = SCENES.iter().find(|scene| scene.name == name).ok_or_else(|| {
+    let info = SceneInfo::named(name).ok_or_else(|| {
         Error::value("scene", name, format!("one of {} or a file.toml", scene_names()))
     })?;
     (info.make)()
