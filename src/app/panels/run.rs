@@ -36,9 +36,7 @@ const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
 
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     scene_box(ui, state);
-    if state.config.source.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
-        == Config::DEFAULT_SCENE
-    {
+    if state.config.named() == Config::DEFAULT_SCENE {
         new_pile(ui, state);
     }
 }

@@ -29,9 +29,10 @@ pub struct SceneInfo {
 }
 
 impl SceneInfo {
-    /// The built-in scene of a name.
+    /// The built-in scene of a name, in upper or lower case.
     pub fn named(name: &str) -> Option<&'static Self> {
-        SCENES.iter().find(|scene| scene.name == name || scene.also.contains(&name))
+        let is_it = |known: &&str| known.eq_ignore_ascii_case(name);
+        SCENES.iter().find(|scene| is_it(&scene.name) || scene.also.iter().any(|also| is_it(&also)))
     }
 }
 

@@ -353,4 +353,18 @@ mod tests {
             assert_eq!(read, config, "{name}");
         }
     }
+
+    #[test]
+    fn scenes_are_known_in_upper_case_and_by_their_challenges() {
+        for (asked, meant) in [("PILE", "pile"), ("Cradle", "cradle"), ("Sag", "column")] {
+            let config = Config::of_scene(asked);
+            let base = config.base_scene().expect("a built-in scene");
+            let scene = config.change(&base).expect("a sound config");
+            assert_eq!((config.named(), scene.name.as_str()), (meant, meant));
+        }
+        let mut pile = Config::of_scene("Pile");
+        pile.source.grains = Some(20);
+        assert!(pile.base_scene().is_ok(), "a pile can have any number of grains");
+        assert!(Config::of_scene("plie").base_scene().is_err());
+    }
 }

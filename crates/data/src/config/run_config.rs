@@ -11,8 +11,8 @@ use super::{SavedState, parser_of};
 use crate::data::{RecordedGrains, check_not_periodic, read_grains};
 use crate::error::{Error, Result};
 use crate::scene::{
-    Deposition, NewPile, Preset, Scene, Settling, built_in, cradle_from, pile_of, put_on_base,
-    settle,
+    Deposition, NewPile, Preset, Scene, SceneInfo, Settling, built_in, cradle_from, pile_of,
+    put_on_base, settle,
 };
 use crate::setting::{Changes, Settable, Value};
 use crate::sim::{RemedyChanges, Settings, Stepper};
@@ -300,8 +300,10 @@ impl Config {
         Ok(scene)
     }
 
-    fn named(&self) -> &str {
-        self.source.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE)
+    /// The scene's own name, however it was asked for; a file's name as it is.
+    pub fn named(&self) -> &str {
+        let asked = self.source.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
+        SceneInfo::named(asked).map_or(asked, |info| info.name)
     }
 
     /// Fails where what is said of the scene's source does not go together.
@@ -397,8 +399,8 @@ impl Config {
     /// The scene of a saved state, which begins with the state's grains.
     fn scene_of_state(&self, path: &Path) -> Result<Scene> {
         let scene = SavedState::open(path)?.as_start();
-        match &self.source.scene {
-            Some(name) if *name != scene.name => {
+        match self.source.scene.as_ref().map(|_| self.named()) {
+            Some(name) if name != scene.name => {
                 let allowed =
                     format!("left out, or {}, the scene of the initial state", scene.name);
                 Err(Error::value("scene", name, allowed))

@@ -70,7 +70,7 @@ impl Starts {
     }
 
     fn is_default_scene(&self) -> bool {
-        self.config.source.scene.as_deref().is_none_or(|name| name == Config::DEFAULT_SCENE)
+        self.config.named() == Config::DEFAULT_SCENE
     }
 
     /// The seed of a start; none where grains are moved. The seed of the shipped pile, which was chosen for what it shows,
