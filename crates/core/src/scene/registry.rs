@@ -32,7 +32,7 @@ impl SceneInfo {
     /// The built-in scene of a name, in upper or lower case.
     pub fn named(name: &str) -> Option<&'static Self> {
         let is_it = |known: &&str| known.eq_ignore_ascii_case(name);
-        SCENES.iter().find(|scene| is_it(&scene.name) || scene.also.iter().any(|also| is_it(&also)))
+        SCENES.iter().find(|scene| is_it(&scene.name) || scene.also.iter().any(is_it))
     }
 }
 
