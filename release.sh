@@ -86,7 +86,7 @@ cp "$packed/THIRD-PARTY-LICENCES.txt" CHANGELOG.md "$out"
 # The page, a folder of static files.
 web/build.sh "$work/page"
 node web/states.mjs "$work/page" "$program" || fail "the page comes to other states than the program"
-cp LICENSE-MIT LICENSE-APACHE "$packed/THIRD-PARTY-LICENCES.txt" "$work/page"
+cp "$packed"/{LICENSE-MIT,LICENSE-APACHE,LICENSE-DejaVu.txt,THIRD-PARTY.md,THIRD-PARTY-LICENCES.txt} "$work/page"
 tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$secs" -c page | gzip -9n >"$out/slump-$version-page.tar.gz"
 
 # The wheel. Maturin names the oldest Linux that it runs on, and asks for patchelf where it would have to bring libraries.

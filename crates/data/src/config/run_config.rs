@@ -399,8 +399,9 @@ impl Config {
     /// The scene of a saved state, which begins with the state's grains.
     fn scene_of_state(&self, path: &Path) -> Result<Scene> {
         let scene = SavedState::open(path)?.as_start();
-        match self.source.scene.as_ref().map(|_| self.named()) {
-            Some(name) if name != scene.name => {
+        match &self.source.scene {
+            // A file's scene may be called as a challenge is.
+            Some(name) if *name != scene.name && self.named() != scene.name => {
                 let allowed =
                     format!("left out, or {}, the scene of the initial state", scene.name);
                 Err(Error::value("scene", name, allowed))
