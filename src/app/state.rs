@@ -14,7 +14,9 @@ use super::film::FilmFormat;
 use super::opening::is_saved_run;
 use super::painting::LegendCache;
 use super::panels::distributions::Distributions;
+use super::panels::gallery::Gallery;
 use super::panels::speed::StepRace;
+use super::panels::table::Table;
 use super::panels::trust::RunBudget;
 use super::panels::{Grabbing, GrainRef};
 use super::preferences::Preferences;
@@ -79,6 +81,8 @@ pub(crate) struct Shown {
     /// Set where the window is to open its graphics device anew.
     pub restart_graphics: bool,
     pub(super) legend: LegendCache,
+    pub(super) gallery: Gallery,
+    pub(super) table: Table,
     notice: Option<Notice>,
 }
 

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::sim::{Simulation, Snapshot, Tally};
 use crate::world::Gravity;
 
-/// Memory for the stored moments of one world. Where it runs out, every second one goes: some 2,000 of 138 grains find
-/// room, and 30 of 10,000.
-const BYTES: usize = 64 << 20;
+/// Memory for the stored moments of all worlds together. Where it runs out, every second one goes: some 2,000 of 138
+/// grains find room, and 30 of 10,000.
+pub(super) const STORED_BYTES: usize = 64 << 20;
 
 /// A moment as it was shown.
 #[derive(Clone, Debug)]
@@ -36,11 +36,12 @@ pub(super) struct StoredMoments {
     /// Only steps whose number is a multiple of this are stored.
     stride: u64,
     bytes: usize,
+    most_bytes: usize,
 }
 
 impl Default for StoredMoments {
     fn default() -> Self {
-        Self { moments: Vec::new(), stride: 1, bytes: 0 }
+        Self { moments: Vec::new(), stride: 1, bytes: 0, most_bytes: STORED_BYTES }
     }
 }
 
@@ -61,7 +62,17 @@ impl StoredMoments {
         let moment = StoredMoment { snapshot, gravity: simulation.world().gravity, tally: *tally };
         self.bytes += moment.bytes();
         self.moments.push(moment);
-        while self.bytes > BYTES && self.moments.len() > 1 {
+        self.thin();
+    }
+
+    /// Keeps no more than that from now on.
+    pub(super) fn keep_within(&mut self, most_bytes: usize) {
+        self.most_bytes = most_bytes;
+        self.thin();
+    }
+
+    fn thin(&mut self) {
+        while self.bytes > self.most_bytes && self.moments.len() > 1 {
             self.stride *= 2;
             let stride = self.stride;
             self.retain(|step| step.is_multiple_of(stride));
@@ -88,5 +99,37 @@ impl StoredMoments {
     pub(super) fn go_on_from(&self, from: u64) -> bool {
         let next = self.moments.partition_point(|moment| moment.step() <= from);
         self.moments.get(next).is_some_and(|next| next.step() <= from + 2 * self.stride)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+
+    #[test]
+    fn moments_are_thinned_to_the_room_that_there_is_and_stay_in_order() {
+        let mut simulation = built_in("pile").unwrap().simulation().unwrap();
+        let mut stored = StoredMoments::default();
+        for _ in 0..40 {
+            simulation.step().unwrap();
+            stored.store(&simulation, &Tally::default(), false);
+        }
+        let (all, bytes) = (stored.moments.len(), stored.bytes);
+        assert_eq!(all, 40);
+        stored.keep_within(bytes / 3);
+        let steps: Vec<u64> = stored.moments.iter().map(StoredMoment::step).collect();
+        assert!(stored.bytes <= bytes / 3 && steps.len() >= 8, "{steps:?}");
+        let stride = stored.stride;
+        assert!(
+            stride > 1 && steps.windows(2).all(|pair| pair[1] - pair[0] == stride),
+            "{steps:?}"
+        );
+        // What comes later finds no more room either.
+        for _ in 0..40 {
+            simulation.step().unwrap();
+            stored.store(&simulation, &Tally::default(), false);
+        }
+        assert!(stored.bytes <= bytes / 3 && stored.moments.len() > 1);
     }
 }

@@ -83,19 +83,92 @@ fn long_names_do_not_widen_the_panel() {
     }
 }
 
+fn wait_for_words(robot: &mut Robot, words: &str) {
+    let start = std::time::Instant::now();
+    while !robot.shows(words) {
+        assert!(start.elapsed().as_secs() < 120, "waited in vain for {words}");
+        robot.harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+}
+
 #[test]
 fn a_step_is_measured_by_all_methods() {
     let mut robot = Robot::open(pile());
     robot.take_steps(5);
     robot.clicks(&["Law, solver", "Speed and accuracy", "Measure this step"]);
-    let start = std::time::Instant::now();
-    while !robot.shows("measured here") {
-        assert!(start.elapsed().as_secs() < 120, "waited in vain for the methods");
-        robot.harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+    wait_for_words(&mut robot, "measured here");
     assert!(robot.harness.query_by_label("newton").is_some());
     assert_eq!(robot.steps(), 5, "the run has taken no step");
+}
+
+#[test]
+fn where_the_time_of_a_step_goes_is_told_of_every_stepper() {
+    let mut robot = Robot::open(pile());
+    robot.take_steps(5);
+    robot.click("Law, solver");
+    for name in ["dem", "moreau"] {
+        robot.click(name);
+        robot.harness.step();
+        if !robot.shows("Measure this step") {
+            robot.click("Speed and accuracy");
+        }
+        robot.click("Measure this step");
+        wait_for_words(&mut robot, "% finding contacts");
+        // Springs need no solver.
+        assert_eq!(robot.shows(" 0 % solving"), name == "dem", "{name}");
+        assert_eq!(robot.shows("measured here"), name != "dem", "{name}: the methods");
+    }
+}
+
+#[test]
+fn a_scene_is_chosen_by_its_picture() {
+    let mut robot = Robot::open(pile());
+    robot.click("Pile");
+    robot.harness.get_by_role_and_label(egui::Role::ComboBox, "Scene").click();
+    robot.frames(SCENES.len() + 5);
+    for info in SCENES {
+        let entry = robot.harness.query_by_role_and_label(egui::Role::Button, info.name);
+        assert!(entry.is_some(), "{}", info.name);
+    }
+    robot.harness.get_by_role_and_label(egui::Role::Button, "drum").click();
+    robot.harness.step();
+    robot.settle();
+    let start = robot.state().frame.start.clone().expect("a start");
+    assert_eq!((start.scene.name.as_str(), robot.world().snapshot.grains.len()), ("drum", 150));
+}
+
+fn type_filter(robot: &mut Robot, text: &str) {
+    robot.harness.get_by_role_and_label(egui::Role::TextInput, "Filter").focus();
+    robot.harness.step();
+    robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    robot.harness.event(egui::Event::Text(text.to_owned()));
+    robot.frames(3);
+}
+
+#[test]
+fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
+    let mut robot = Robot::open(pile());
+    robot.take_steps(5);
+    robot.clicks(&["Compare", "Grains and contacts"]);
+    assert!(robot.shows("138 of 138"));
+    type_filter(&mut robot, "n = 3");
+    let by_hand = robot.world().snapshot.grains.iter().filter(|grain| grain.coordination == 3);
+    let by_hand = by_hand.count();
+    assert!(by_hand > 0 && robot.shows(&format!("{by_hand} of 138")));
+    type_filter(&mut robot, "n = many");
+    assert!(robot.shows("“n = many” is no comparison of grain, x, y, speed, overlap, force, n"));
+
+    robot.click("Contacts");
+    let contacts = robot.world().snapshot.contacts.clone();
+    let last = contacts.iter().rfind(|contact| contact.other_grain.is_some()).expect("a contact");
+    let (grain, other) = (last.grain, last.other_grain.expect("a grain"));
+    type_filter(&mut robot, &format!("grain = {grain} and with = {other}"));
+    assert!(robot.shows(&format!("1 of {}", contacts.len())));
+    robot.harness.get_by_label_contains(&format!("{grain:>5} {other:>5} ")).click();
+    robot.frames(2);
+    let pinned = robot.state().mouse.pinned;
+    assert_eq!(pinned, Some(GrainRef { world: 0, grain: grain as usize }));
 }
 
 /// True if the panel says the residual of the last step.

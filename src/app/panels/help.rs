@@ -7,7 +7,7 @@ use crate::app::state::AppState;
 const KEYS: [(&str, &str); 15] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
-    ("R", "again from the start, with the present settings; the run is kept"),
+    ("R", "again from the start; this run is kept"),
     ("Ctrl Z", "back to the run that was there before"),
     ("[  ]", "slower, faster"),
     ("B", "fold the bars: the scene is the window"),

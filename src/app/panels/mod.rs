@@ -6,6 +6,7 @@ pub(super) mod compare;
 mod data;
 pub(super) mod distributions;
 pub(super) mod front;
+pub(super) mod gallery;
 mod grabbing;
 pub(super) mod grain;
 pub(super) mod help;
@@ -17,6 +18,7 @@ pub(super) mod see;
 mod solver;
 pub(super) mod speed;
 pub(super) mod status;
+pub(super) mod table;
 pub(super) mod trust;
 
 use egui::{CollapsingHeader, RichText, Ui};
@@ -86,6 +88,7 @@ impl Page {
                 ui.separator();
                 plots::choices(ui, state);
                 folded(ui, state, "Distributions", distributions::show);
+                folded(ui, state, "Grains and contacts", table::show);
             }
             Self::Look => see::look(ui, state),
             Self::Save => {

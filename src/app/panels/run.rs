@@ -1,15 +1,16 @@
 //! Panel: which scene and how many grains; the runs before; and what makes the run again.
 
-use egui::{Align, Button, ComboBox, RichText, Ui};
+use egui::{Align, Button, RichText, Ui};
 
 use super::compare::title_among;
+use super::gallery;
 use super::grain::compact;
 use crate::app::budget;
 use crate::app::sharing::CHANGED;
 use crate::app::state::AppState;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
-use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
+use crate::scene::{Deposition, NewPile, SCENES};
 use crate::solver::SolverChanges;
 
 /// Most grains that the panel offers; the command line takes more.
@@ -80,19 +81,8 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
             "Drop a TOML scene, a CSV of discs or a saved run on the window to open it.",
         );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            let list = ComboBox::from_id_salt("scene").width(150.0).selected_text(&current);
-            let shown = list.show_ui(ui, |ui| {
-                for &group in SceneGroup::ALL {
-                    ui.label(RichText::new(group.hint()).small().weak());
-                    for info in SCENES.iter().filter(|info| info.group == group) {
-                        let entry = ui.selectable_label(info.name == current, info.name);
-                        if entry.on_hover_text(info.summary).clicked() {
-                            state.load(Config::of_scene(info.name));
-                        }
-                    }
-                }
-            });
-            shown.response.labelled_by(label.id);
+            let list = gallery::show(ui, state, &current).labelled_by(label.id);
+            state.note_control("scenes", list.rect);
         });
     });
     if let Some(info) = SCENES.iter().find(|info| info.name == current) {

@@ -1,9 +1,12 @@
-//! Panel: how long methods take to solve the step that is shown how well. Each solves it to one tolerance after the other,
-//! on a thread of its own.
+//! Panel: where the time of the next steps goes, and how long methods take to solve the step that is shown how well. Each
+//! solves it to one tolerance after the other, on a thread of its own.
+
+use std::sync::OnceLock;
 
 use egui::{Color32, RichText, Ui};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 
+use super::grain::compact;
 use crate::Instant;
 use crate::app::opening::TakenRun;
 use crate::app::plots::plot_with_axes;
@@ -12,7 +15,7 @@ use crate::app::theme;
 use crate::app::work::{Reporter, Work};
 use crate::error::Result;
 use crate::live::WorldFrame;
-use crate::sim::{Settings, Simulation};
+use crate::sim::{Settings, Simulation, StepTimes};
 use crate::solver::{Fallback, METHODS, Method, SolverSettings, StopTest};
 
 /// Tolerances of the residual, from loose to tight.
@@ -22,6 +25,9 @@ const LIMIT_SECS: f64 = 0.25;
 /// Times a step is taken, of which the shortest counts.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
+/// Steps whose times are added up, at most, and how long that may take, s.
+const TIMED_STEPS: u32 = 50;
+const TIMED_SECS: f64 = 1.0;
 
 /// What a method came to.
 pub(crate) struct RaceCurve {
@@ -34,20 +40,32 @@ pub(crate) struct RaceCurve {
 pub(crate) struct StepRace {
     /// The step that they solve: simulated time, s.
     time_secs: f64,
-    /// What methods came to, once all have come to their end.
+    /// What was measured, once all of it is.
+    measured: Measured,
+    work: Option<Work<Measured>>,
+}
+
+/// What was measured of the steps that follow a moment.
+#[derive(Default)]
+struct Measured {
+    /// What so many of them took.
+    times: Option<(u32, StepTimes)>,
+    /// What methods came to; none of a stepper that has no method.
     curves: Vec<RaceCurve>,
-    work: Option<Work<Vec<RaceCurve>>>,
 }
 
 /// Has all methods solve the step that follows the moment of a run, where it was not given up before that came.
-fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Vec<RaceCurve>> {
-    let Some(run) = run else { return Ok(Vec::new()) };
+fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
+    let Some(run) = run else { return Ok(Measured::default()) };
+    let simulation = &run.world.simulation;
+    let times = times_of_steps(simulation.clone());
     let mut curves = Vec::new();
-    for (number, info) in METHODS.iter().enumerate() {
+    let has_method = simulation.settings().stepper.uses_method();
+    for (number, info) in METHODS.iter().enumerate().filter(|_| has_method) {
         let goes_on = || reporter.tell(number as f64 / METHODS.len() as f64).is_continue();
         let mut points: Vec<[f64; 2]> = Vec::new();
         for tolerance in TOLERANCES {
-            let point = timed(&run.world.simulation, info.method, tolerance, goes_on);
+            let point = timed(simulation, info.method, tolerance, goes_on);
             let Some([ms, residual]) = point else { break };
             // A method that comes no further has nothing more to show.
             if points.last().is_none_or(|&[_, before]| residual < before) {
@@ -64,7 +82,38 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Vec<RaceCurve>> {
             curves.push(RaceCurve { method: info.name, points });
         }
     }
-    Ok(curves)
+    Ok(Measured { times, curves })
+}
+
+/// What the next steps take, as they are set; nothing where none can be taken.
+fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
+    let (mut steps, mut sum) = (0, StepTimes::default());
+    while steps < TIMED_STEPS && sum.total_secs < TIMED_SECS {
+        let Ok(times) = simulation.timed_step(now_secs) else { break };
+        sum.detection_secs += times.detection_secs;
+        sum.solving_secs += times.solving_secs;
+        sum.total_secs += times.total_secs;
+        steps += 1;
+    }
+    (steps > 0 && sum.total_secs > 0.0).then_some((steps, sum))
+}
+
+/// s since it was first asked.
+fn now_secs() -> f64 {
+    static BEGUN: OnceLock<Instant> = OnceLock::new();
+    BEGUN.get_or_init(Instant::now).elapsed().as_secs_f64()
+}
+
+/// Says where the time went.
+fn told(&(steps, times): &(u32, StepTimes)) -> String {
+    let part = |secs: f64| 100.0 * secs / times.total_secs;
+    let (contacts, solving) = (part(times.detection_secs), part(times.solving_secs));
+    let ms = compact(1e3 * times.total_secs / f64::from(steps));
+    let of = if steps == 1 { "of one step".into() } else { format!("mean of {steps} steps") };
+    format!(
+        "A step takes {ms} ms ({of}): {contacts:.0} % finding contacts, {solving:.0} % solving, {:.0} % the rest.",
+        100.0 - contacts.round() - solving.round()
+    )
 }
 
 /// The least time of the step, ms, and its residual; nothing where it cannot be taken so.
@@ -109,15 +158,22 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if let Some(race) = &mut state.race
         && let Some(outcome) = race.work.as_ref().and_then(Work::outcome)
     {
-        (race.curves, race.work) = (outcome.unwrap_or_default(), None);
+        (race.measured, race.work) = (outcome.unwrap_or_default(), None);
     }
     match state.race.as_ref().and_then(|race| race.work.as_ref()) {
         Some(work) => work.show(ui, "Measuring", "Stop measuring", "Other methods are left out."),
         None => measure(ui, state),
     }
     let Some(race) = state.race.as_ref().filter(|race| race.work.is_none()) else { return };
-    draw(ui, &race.curves, now(state, race));
-    legend(ui, &race.curves);
+    let Measured { times, curves } = &race.measured;
+    if let Some(times) = times {
+        ui.label(told(times));
+    }
+    if curves.is_empty() {
+        return;
+    }
+    draw(ui, curves, now(state, race));
+    legend(ui, curves);
     let time_secs = race.time_secs;
     let text = format!(
         "The step that follows t = {time_secs:.4} s, measured here; ◆ is the present method."
@@ -127,20 +183,18 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 
 /// The button that measures the step that is shown.
 fn measure(ui: &mut Ui, state: &mut AppState) {
-    let has_method = |world: &&WorldFrame| {
-        world.failure.is_none() && world.controls.settings.stepper.uses_method()
-    };
-    let time_secs =
-        state.world().filter(has_method).map(|world| world.snapshot.observables.time_secs);
+    let goes_on = |world: &&WorldFrame| world.failure.is_none();
+    let time_secs = state.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
     let button = ui.add_enabled(time_secs.is_some(), egui::Button::new("Measure this step"));
-    let hint = "Each method solves the step that is shown, to one tolerance after the other: some seconds.";
-    let button =
-        button.on_hover_text(hint).on_disabled_hover_text("There is no method to measure.");
+    let hint = "Where the time of a step goes; then each method solves the step that is shown, to one tolerance after the \
+                other: some seconds.";
+    let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot go on.");
     if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
         let run = state.take_run(state.selected);
         let work =
             Work::start(ui.ctx(), vec![run], move |mut runs, reporter| race(runs.pop(), reporter));
-        state.race = Some(StepRace { time_secs, curves: Vec::new(), work: Some(work) });
+        let measured = Measured::default();
+        state.race = Some(StepRace { time_secs, measured, work: Some(work) });
     }
 }
 

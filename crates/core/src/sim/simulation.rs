@@ -12,6 +12,7 @@ use crate::sim::observables::{self, Observables};
 use crate::sim::settings::{Settings, reach_in};
 use crate::sim::snapshot::Surroundings;
 use crate::sim::state::State;
+use crate::sim::step_times::Stopwatch;
 use crate::sim::steppers::{Stepper, StepperMemory};
 use crate::sim::stepping::{Advance, Stage, StepResult};
 use crate::sim::walls::Walls;
@@ -78,6 +79,7 @@ impl Simulation {
                 body_forces: Vec::new(),
                 is_held: false,
                 time_step_of_impulses_secs: settings.parameters.time_step_secs,
+                stopwatch: Stopwatch::default(),
             },
             settings,
             steady: Steady::default(),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::{Candidates, ContactList, LookAhead, Reach};
 use crate::error::Result;
 use crate::sim::pull::Pull;
+use crate::sim::step_times::Stopwatch;
 use crate::sim::walls::Walls;
 use crate::solver::{Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
@@ -33,6 +34,9 @@ pub(crate) struct State {
     pub is_held: bool,
     /// Δt of the impulses in `contacts`, s.
     pub time_step_of_impulses_secs: f64,
+    /// Runs while a step is timed.
+    #[serde(skip)]
+    pub stopwatch: Stopwatch,
 }
 
 impl State {
@@ -58,10 +62,12 @@ impl State {
     /// Finds the contacts: those at the present positions, or, looking ahead, those that the step may
     /// come to as well.
     pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
+        let begun = self.stopwatch.now();
         match M::AXES {
             1 => self.detect_on::<1>(ahead),
             _ => self.detect_on::<2>(ahead),
         }
+        self.stopwatch.times.detection_secs += self.stopwatch.now() - begun;
     }
 
     fn detect_on<const AXES: usize>(&mut self, ahead: Option<LookAhead>) {

@@ -155,7 +155,16 @@ impl<'a, M: Model> Stage<'a, M> {
 
     /// Solves the prepared problem by the method of the settings.
     pub fn solve(&mut self, settings: &Settings) -> SolveReport {
-        solve(self.problem, self.memory, &settings.solver)
+        self.timed(|stage| solve(stage.problem, stage.memory, &settings.solver))
+    }
+
+    /// Does what is part of solving.
+    pub(super) fn timed<T>(&mut self, solving: impl FnOnce(&mut Self) -> T) -> T {
+        let begun = self.state.stopwatch.now();
+        let outcome = solving(self);
+        let stopwatch = &mut self.state.stopwatch;
+        stopwatch.times.solving_secs += stopwatch.now() - begun;
+        outcome
     }
 
     /// Moves the grains by the solution of the problem, for Δt.

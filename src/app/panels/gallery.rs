@@ -1,0 +1,154 @@
+//! The built-in scenes as a gallery: a picture of each as it starts, in the look that is chosen.
+
+use egui::{
+    Align2, Color32, ColorImage, ComboBox, CursorIcon, FontId, Rect, Response, RichText, Role,
+    Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, WidgetInfo,
+};
+
+use super::scene::own_style;
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::config::Config;
+use crate::error::Result;
+use crate::render::{Renderer, RendererChoice, Style, draw_scene};
+use crate::scene::{SCENES, SceneGroup, SceneInfo};
+
+/// Size of a picture, points.
+const PICTURE: egui::Vec2 = egui::vec2(128.0, 76.0);
+/// Height of the name below it, points.
+const NAME_HEIGHT: f32 = 18.0;
+/// Pictures in a row, at the most.
+const MOST_COLUMNS: usize = 4;
+/// Height of the list, points.
+const HEIGHT: f32 = 470.0;
+
+/// Pictures that were drawn, and the style that they are in.
+#[derive(Default)]
+pub(crate) struct Gallery {
+    style: Option<Style>,
+    pictures: Vec<Option<TextureHandle>>,
+}
+
+/// The list of scenes, closed until it is asked for. A click opens a scene.
+pub(super) fn show(ui: &mut Ui, state: &mut AppState, current: &str) -> Response {
+    let list = ComboBox::from_id_salt("scene").width(150.0).height(HEIGHT).selected_text(current);
+    let shown = list.show_ui(ui, |ui| {
+        follow_style(ui, state);
+        let side = PICTURE.x + ui.spacing().item_spacing.x;
+        let room = ui.ctx().content_rect().width() - 40.0;
+        let columns = ((room / side) as usize).clamp(1, MOST_COLUMNS);
+        ui.set_min_width(columns as f32 * side);
+        for &group in SceneGroup::ALL {
+            ui.label(RichText::new(group.hint()).strong());
+            egui::Grid::new(group.hint()).num_columns(columns).show(ui, |ui| {
+                let scenes = SCENES.iter().enumerate().filter(|(_, info)| info.group == group);
+                for (place, (index, info)) in scenes.enumerate() {
+                    if place > 0 && place % columns == 0 {
+                        ui.end_row();
+                    }
+                    if entry(ui, state, index, info, info.name == current).clicked() {
+                        state.load(Config::of_scene(info.name));
+                    }
+                }
+            });
+        }
+    });
+    shown.response
+}
+
+/// Pictures of another look are drawn anew.
+fn follow_style(ui: &Ui, state: &mut AppState) {
+    let style = Style {
+        scale_bar: false,
+        legend: false,
+        show_forces: false,
+        show_velocities: false,
+        ..own_style(state, ui.visuals().dark_mode)
+    };
+    let gallery = &mut state.shown.gallery;
+    if gallery.style.as_ref() != Some(&style) {
+        *gallery = Gallery { style: Some(style), pictures: vec![None; SCENES.len()] };
+    }
+}
+
+/// One scene: its picture and its name.
+fn entry(
+    ui: &mut Ui,
+    state: &mut AppState,
+    index: usize,
+    info: &SceneInfo,
+    is_open: bool,
+) -> Response {
+    let size = PICTURE + egui::vec2(0.0, NAME_HEIGHT);
+    let (cell, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, info.name));
+    state.note_control(&format!("scene {}", info.name), cell);
+    if ui.is_rect_visible(cell) {
+        let (picture, below) = cell.split_top_bottom_at_y(cell.top() + PICTURE.y);
+        paint(ui, &mut state.shown.gallery, index, info, picture);
+        let visuals = ui.style().interact_selectable(&response, is_open);
+        let stroke = if is_open || response.hovered() {
+            Stroke::new(2.0, theme::accent(ui.visuals().dark_mode))
+        } else {
+            ui.visuals().widgets.noninteractive.bg_stroke
+        };
+        ui.painter().rect_stroke(picture, 2.0, stroke, StrokeKind::Inside);
+        let (font, ink) = (FontId::proportional(12.0), visuals.text_color());
+        let ink = if is_open { ui.visuals().strong_text_color() } else { ink };
+        ui.painter().text(below.center(), Align2::CENTER_CENTER, info.name, font, ink);
+    }
+    response.on_hover_text(info.summary).on_hover_cursor(CursorIcon::PointingHand)
+}
+
+/// Paints a scene's picture. Of those that are not there yet, one a frame is drawn.
+fn paint(ui: &Ui, gallery: &mut Gallery, index: usize, info: &SceneInfo, cell: Rect) {
+    let Gallery { style: Some(style), pictures } = gallery else { return };
+    if pictures[index].is_none() {
+        let id = egui::Id::unique("picture of this frame");
+        let frame = ui.ctx().cumulative_pass_nr();
+        let drawn_in = ui.data(|data| data.get_temp::<u64>(id));
+        ui.ctx().request_repaint();
+        if drawn_in == Some(frame) {
+            return;
+        }
+        ui.data_mut(|data| data.insert_temp(id, frame));
+        let size = (PICTURE * ui.pixels_per_point()).round();
+        // A scene that cannot be drawn keeps its name.
+        let image = picture(info, style, [size.x as u32, size.y as u32])
+            .unwrap_or_else(|_| ColorImage::filled([1, 1], Color32::TRANSPARENT));
+        pictures[index] = Some(ui.ctx().load_texture(info.name, image, TextureOptions::LINEAR));
+    }
+    if let Some(texture) = &pictures[index] {
+        let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+        ui.painter().image(texture.id(), cell, whole, Color32::WHITE);
+    }
+}
+
+/// A scene as it starts, so many pixels large.
+fn picture(info: &SceneInfo, style: &Style, [width, height]: [u32; 2]) -> Result<ColorImage> {
+    let scene = (info.make)()?;
+    let view = scene.view();
+    let camera = style.camera(view.min, view.max, width, height);
+    let snapshot = scene.simulation()?.snapshot();
+    let mut renderer = Renderer::new(RendererChoice::Cpu)?;
+    let image = draw_scene(&mut renderer, &snapshot, style, &camera, width, height)?;
+    let size = [width as usize, height as usize];
+    Ok(ColorImage::from_rgba_unmultiplied(size, image.as_raw()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Empty, or one colour, is what a scene out of view would be.
+    #[test]
+    fn every_scene_is_seen_on_its_picture() {
+        let style = Style { scale_bar: false, legend: false, ..Style::default() };
+        for info in SCENES {
+            let image = picture(info, &style, [128, 76]).unwrap();
+            let ground = image.pixels[0];
+            let inked = image.pixels.iter().filter(|&&pixel| pixel != ground).count();
+            assert!(inked > 40, "{}: {inked} pixels", info.name);
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Panel: the grains and the contacts of the moment that is shown as a table, filtered and sorted. A click on a row pins
+//! its grain.
+
+use egui::{RichText, ScrollArea, TextEdit, Ui};
+
+use super::GrainRef;
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::sim::{ContactView, GrainView, Snapshot};
+
+/// Height of the rows that are seen, points.
+const HEIGHT: f32 = 240.0;
+/// Font of the rows, points.
+const FONT: f32 = 10.5;
+
+/// What is asked of the table.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    /// True where it has contacts; else it has grains.
+    contacts: bool,
+    /// What a row has to fulfil.
+    filter: String,
+    /// The column that rows are sorted by, and whether its largest come first.
+    sort: Option<(usize, bool)>,
+}
+
+/// A column of rows that are made of `T`.
+struct Column<T> {
+    name: &'static str,
+    /// Characters.
+    width: usize,
+    /// True where numbers are whole.
+    whole: bool,
+    hint: &'static str,
+    /// Of one of the snapshot's with its number, in units of d where lengths are meant.
+    value: fn(usize, &T, f64) -> f64,
+}
+
+const GRAINS: [Column<GrainView>; 7] = [
+    column("grain", 5, true, "Its number.", |index, _, _| index as f64),
+    column("x", 8, false, "x over d.", |_, grain, d| grain.position.x / d),
+    column("y", 8, false, "y over d.", |_, grain, d| grain.position.y / d),
+    column("speed", 8, false, "Of its centre, m/s.", |_, grain, _| grain.velocity.length()),
+    column("overlap", 8, false, "The deepest, over d.", |_, grain, d| grain.overlap / d),
+    column("force", 8, false, "Σ|N| over its contacts, N.", |_, grain, _| grain.force),
+    column("n", 2, true, "Its contacts.", |_, grain, _| f64::from(grain.coordination)),
+];
+
+/// What stands for the number of what is fixed.
+const FIXED: f64 = -1.0;
+
+const CONTACTS: [Column<ContactView>; 7] = [
+    column("grain", 5, true, "Its first grain.", |_, contact, _| f64::from(contact.grain)),
+    column("with", 5, true, "Its second grain; -1 is what is fixed.", |_, contact, _| {
+        contact.other_grain.map_or(FIXED, f64::from)
+    }),
+    column("N", 8, false, "Normal force, N; negative pulls.", |_, contact, _| contact.normal_force),
+    column("T", 8, false, "Tangential force, N.", |_, contact, _| contact.tangential_force),
+    column("gap", 8, false, "Gap over d; negative is overlap.", |_, contact, d| contact.gap / d),
+    column("x", 6, false, "x over d of the first grain.", |_, contact, d| contact.from.x / d),
+    column("y", 6, false, "y over d of the first grain.", |_, contact, d| contact.from.y / d),
+];
+
+const fn column<T>(
+    name: &'static str,
+    width: usize,
+    whole: bool,
+    hint: &'static str,
+    value: fn(usize, &T, f64) -> f64,
+) -> Column<T> {
+    Column { name, width, whole, hint, value }
+}
+
+pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
+    let Some(world) = state.world() else { return };
+    let (snapshot, world) = (world.snapshot.clone(), state.selected);
+    let pinned = state.mouse.pinned.filter(|pinned| pinned.world == world);
+    let table = &mut state.shown.table;
+    ui.horizontal(|ui| {
+        let before = table.contacts;
+        ui.selectable_value(&mut table.contacts, false, "Grains");
+        ui.selectable_value(&mut table.contacts, true, "Contacts");
+        if table.contacts != before {
+            *table = Table { contacts: table.contacts, ..Table::default() };
+        }
+        let hint = if table.contacts { "N < 0 and y > 2" } else { "force > 0.01 and y > 2" };
+        let label = ui.label("Filter").on_hover_text(
+            "Comparisons of columns with numbers, joined by and. Columns and their units are told by their heads.",
+        );
+        let field = TextEdit::singleline(&mut table.filter).hint_text(hint);
+        ui.add(field.desired_width(f32::INFINITY)).labelled_by(label.id);
+    });
+    let pinned = pinned.map(|pinned| pinned.grain);
+    let clicked = if table.contacts {
+        let of = |contact: &ContactView| contact.grain as usize;
+        let is_pinned = |_, contact: &ContactView| {
+            let has = |grain: usize| {
+                [Some(contact.grain), contact.other_grain].contains(&Some(grain as u32))
+            };
+            pinned.is_some_and(has)
+        };
+        let clicked = rows(ui, table, &snapshot, &snapshot.contacts, &CONTACTS, is_pinned);
+        clicked.map(|index| of(&snapshot.contacts[index]))
+    } else {
+        let is_pinned = |index, _: &GrainView| pinned == Some(index);
+        rows(ui, table, &snapshot, &snapshot.grains, &GRAINS, is_pinned)
+    };
+    if let Some(grain) = clicked {
+        state.mouse.pinned = Some(GrainRef { world, grain });
+    }
+}
+
+/// Shows heads and rows, and gives the number of one that is clicked.
+fn rows<T>(
+    ui: &mut Ui,
+    table: &mut Table,
+    snapshot: &Snapshot,
+    all: &[T],
+    columns: &[Column<T>],
+    is_pinned: impl Fn(usize, &T) -> bool,
+) -> Option<usize> {
+    let diameter = snapshot.surroundings.mean_diameter;
+    let chosen = match chosen(table, all, columns, diameter) {
+        Ok(chosen) => chosen,
+        Err(refusal) => {
+            ui.label(RichText::new(refusal).color(theme::warning(ui.visuals().dark_mode)));
+            return None;
+        }
+    };
+    ui.spacing_mut().item_spacing = egui::vec2(0.0, 1.0);
+    ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
+    ui.spacing_mut().interact_size.y = 0.0;
+    let font = |text: String| RichText::new(text).monospace().size(FONT);
+    ui.horizontal(|ui| {
+        for (index, column) in columns.iter().enumerate() {
+            let mark = match table.sort {
+                Some((by, true)) if by == index => "▾",
+                Some((by, false)) if by == index => "▴",
+                _ => "",
+            };
+            let text = format!("{:>1$} ", format!("{mark}{}", column.name), column.width);
+            let head = ui.selectable_label(false, font(text).strong());
+            if head.on_hover_text(format!("{} A click sorts.", column.hint)).clicked() {
+                let is_down = table.sort == Some((index, true));
+                table.sort = Some((index, !is_down));
+            }
+        }
+    });
+    let mut clicked = None;
+    let height = ui.fonts_mut(|fonts| fonts.row_height(&egui::FontId::monospace(FONT)));
+    let area = ScrollArea::vertical().max_height(HEIGHT).auto_shrink([false, true]);
+    area.id_salt("rows").show_rows(ui, height, chosen.len(), |ui, seen| {
+        for &index in &chosen[seen] {
+            let item = &all[index];
+            let cells = columns.iter().map(|column| {
+                format!(
+                    "{:>1$} ",
+                    written((column.value)(index, item, diameter), column),
+                    column.width
+                )
+            });
+            let row = ui.selectable_label(is_pinned(index, item), font(cells.collect()));
+            if row.clicked() {
+                clicked = Some(index);
+            }
+        }
+    });
+    ui.label(RichText::new(format!("{} of {}", chosen.len(), all.len())).small().weak());
+    clicked
+}
+
+/// A number in the width of its column.
+fn written<T>(value: f64, column: &Column<T>) -> String {
+    if column.whole {
+        return format!("{value}");
+    }
+    let decimals = column.width.saturating_sub(4).min(3);
+    let fits = value == 0.0 || (1e-2..1e3).contains(&value.abs());
+    if fits { format!("{value:.decimals$}") } else { format!("{value:.1e}") }
+}
+
+/// The numbers of the rows that pass the filter, as they are sorted.
+fn chosen<T>(
+    table: &Table,
+    all: &[T],
+    columns: &[Column<T>],
+    diameter: f64,
+) -> Result<Vec<usize>, String> {
+    let comparisons = read_filter(&table.filter, columns)?;
+    let value = |index: usize, column: usize| (columns[column].value)(index, &all[index], diameter);
+    let passes = |&index: &usize| comparisons.iter().all(|it| it.holds(value(index, it.column)));
+    let mut chosen: Vec<usize> = (0..all.len()).filter(passes).collect();
+    if let Some((column, is_down)) = table.sort.filter(|&(column, _)| column < columns.len()) {
+        chosen.sort_by(|&one, &other| {
+            let order = value(one, column).total_cmp(&value(other, column));
+            if is_down { order.reverse() } else { order }
+        });
+    }
+    Ok(chosen)
+}
+
+/// A column against a number.
+struct Comparison {
+    column: usize,
+    sign: &'static str,
+    number: f64,
+}
+
+/// Longer ones first: "<=" begins as "<" does.
+const SIGNS: [&str; 5] = ["<=", ">=", "<", ">", "="];
+
+impl Comparison {
+    fn holds(&self, value: f64) -> bool {
+        match self.sign {
+            "<=" => value <= self.number,
+            ">=" => value >= self.number,
+            "<" => value < self.number,
+            ">" => value > self.number,
+            _ => value == self.number,
+        }
+    }
+}
+
+/// Comparisons joined by "and".
+fn read_filter<T>(text: &str, columns: &[Column<T>]) -> Result<Vec<Comparison>, String> {
+    let parts = text.split(" and ").map(str::trim).filter(|part| !part.is_empty());
+    let read = |part: &str| -> Option<Comparison> {
+        let (sign, at) = SIGNS.iter().find_map(|sign| Some((*sign, part.find(sign)?)))?;
+        let (name, number) = (part[..at].trim(), part[at + sign.len()..].trim());
+        let column = columns.iter().position(|column| column.name == name)?;
+        Some(Comparison { column, sign, number: number.parse().ok()? })
+    };
+    parts
+        .map(|part| {
+            read(part).ok_or_else(|| {
+                let names: Vec<_> = columns.iter().map(|column| column.name).collect();
+                format!(
+                    "“{part}” is no comparison of {} with a number, by <, <=, =, >= or >.",
+                    names.join(", ")
+                )
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+
+    #[test]
+    fn rows_are_those_that_a_count_by_hand_has() {
+        let mut simulation = built_in("pile").unwrap().simulation().unwrap();
+        simulation.take_steps(5).unwrap();
+        let snapshot = simulation.snapshot();
+        let d = snapshot.surroundings.mean_diameter;
+        let table = |contacts, filter: &str| Table {
+            contacts,
+            filter: filter.into(),
+            sort: Some((5, true)),
+        };
+        let all = chosen(&table(false, ""), &snapshot.grains, &GRAINS, d).unwrap();
+        assert_eq!(all.len(), 138);
+        let forces: Vec<f64> = all.iter().map(|&index| snapshot.grains[index].force).collect();
+        assert!(forces[0] > 0.0 && forces.is_sorted_by(|one, next| one >= next));
+
+        let high = |grain: &&GrainView| grain.position.y / d > 3.0 && grain.coordination == 3;
+        let by_hand = snapshot.grains.iter().filter(high).count();
+        let found = chosen(&table(false, "y > 3 and n = 3"), &snapshot.grains, &GRAINS, d).unwrap();
+        assert!(by_hand > 0 && found.len() == by_hand);
+
+        let on_ground = snapshot.contacts.iter().filter(|contact| contact.other_grain.is_none());
+        let found = chosen(&table(true, "with<=-1"), &snapshot.contacts, &CONTACTS, d).unwrap();
+        assert!(!found.is_empty() && found.len() == on_ground.count());
+    }
+
+    #[test]
+    fn a_filter_that_is_none_is_told_with_what_is_allowed() {
+        for text in ["forc > 1", "force", "force > much", "force > 1 and", "> 1", "and"] {
+            let refusal = read_filter(text, &GRAINS).err();
+            let ends_well = text.ends_with(" and") || text == "and";
+            match refusal {
+                Some(refusal) => assert!(refusal.contains("grain, x, y, speed"), "{refusal}"),
+                None => assert!(ends_well, "{text}"),
+            }
+        }
+    }
+}
