@@ -180,7 +180,7 @@ fn beside_other_piles() {
 }
 
 fn frames() {
-    for count in [138, 10_000, 50_000] {
+    for count in [138, 2_000, 10_000, 50_000] {
         let simulation = if count == 138 { pile() } else { large(count) };
         let mut window = Window::open(simulation);
         window.state.live.send(Command::Play);

@@ -14,7 +14,7 @@ const scenes = ["pile", "moving-walls", "cradle", "drum", "shear", "vibrated", "
 const steppers = ["moreau", "range", "dem", "avbd", "tgs-soft"];
 
 // What the module asks of a browser that shows it.
-for (const name of ["slump_answer", "slump_ask", "slump_save", "slump_store"]) globalThis[name] = () => {};
+for (const name of ["slump_answer", "slump_ask", "slump_gives_up", "slump_save", "slump_store"]) globalThis[name] = () => {};
 const { initSync, state_of } = await import(join(page, "slump_web.js"));
 initSync({ module: readFileSync(join(page, "slump_web_bg.wasm")) });
 

@@ -16,9 +16,10 @@ use crate::live::{Live, LiveOptions, Post, RemoteEngine, StartSource};
 use crate::output::give_file;
 pub use crate::output::written_files;
 
-/// What computes the runs of a page, in a worker of it. What it says goes to `post`.
-pub fn engine(post: Post) -> RemoteEngine<Opening> {
-    RemoteEngine::new(post, LiveOptions::default())
+/// What computes the runs of a page, in a worker of it. What it says goes to `post`; while it makes a start it asks
+/// whether the page `gives_up` on that.
+pub fn engine(post: Post, gives_up: fn() -> bool) -> RemoteEngine<Opening> {
+    RemoteEngine::new(post, LiveOptions { gives_up: Box::new(gives_up), ..LiveOptions::default() })
 }
 
 /// Tells callbacks what format they draw into.

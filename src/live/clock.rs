@@ -1,5 +1,6 @@
 //! Simulated time against the time on the wall.
 
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
 
 use super::Pace;
@@ -9,6 +10,20 @@ use crate::Instant;
 const MOST_LAG: Duration = Duration::from_millis(100);
 /// Rates are means over this long.
 const RATE_WINDOW: Duration = Duration::from_millis(300);
+
+/// What comes within a time; of none, without asking for a clock, which a page has not.
+pub(crate) fn receive_within<T>(
+    inbox: &Receiver<T>,
+    wait: Duration,
+) -> std::result::Result<T, RecvTimeoutError> {
+    if !wait.is_zero() {
+        return inbox.recv_timeout(wait);
+    }
+    inbox.try_recv().map_err(|error| match error {
+        TryRecvError::Empty => RecvTimeoutError::Timeout,
+        TryRecvError::Disconnected => RecvTimeoutError::Disconnected,
+    })
+}
 
 /// Says when the next step is due, and how fast steps were taken.
 pub(super) struct Clock {

@@ -91,6 +91,11 @@ pub enum Command {
 }
 
 impl Command {
+    /// True if it makes a start pointless that is being made.
+    pub(super) fn interrupts(&self) -> bool {
+        matches!(self, Self::CancelLoading | Self::Load(_) | Self::Quit)
+    }
+
     /// True if it is about the state at the moment that is shown.
     pub(super) fn is_about_the_moment(&self) -> bool {
         matches!(

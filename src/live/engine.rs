@@ -2,12 +2,12 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 use triple_buffer::Input;
 
-use super::clock::Clock;
+use super::clock::{Clock, receive_within};
 use super::{
     Command, LiveFrame, LiveOptions, LiveStart, LoadingProgress, Pace, RunHistory, StartSource,
     WorldFrame,
@@ -37,6 +37,8 @@ enum Mode {
     Seeking {
         then_plays: bool,
     },
+    /// A step that takes longer than a slice is brought to its end, after which time stands still.
+    Stepping,
     /// A start is made.
     Loading(LoadingProgress),
 }
@@ -91,20 +93,8 @@ pub(super) struct Engine {
     acknowledged: u64,
     loads: u64,
     quit: bool,
-}
-
-/// What comes within a time; of none, without asking for a clock, which a page has not.
-pub(crate) fn receive_within<T>(
-    inbox: &Receiver<T>,
-    wait: Duration,
-) -> std::result::Result<T, RecvTimeoutError> {
-    if !wait.is_zero() {
-        return inbox.recv_timeout(wait);
-    }
-    inbox.try_recv().map_err(|error| match error {
-        TryRecvError::Empty => RecvTimeoutError::Timeout,
-        TryRecvError::Disconnected => RecvTimeoutError::Disconnected,
-    })
+    /// Asked while a start is made ([`LiveOptions`]).
+    gives_up: Box<dyn Fn() -> bool + Send>,
 }
 
 fn message(error: Error) -> Arc<str> {
@@ -117,7 +107,7 @@ impl Engine {
         frames: Input<LiveFrame>,
         options: LiveOptions,
     ) -> Self {
-        let LiveOptions { wake, frame_interval: interval, recording_bytes } = options;
+        let LiveOptions { wake, gives_up, frame_interval: interval, recording_bytes } = options;
         let sent = Instant::now();
         Self {
             inbox,
@@ -141,6 +131,7 @@ impl Engine {
             acknowledged: 0,
             loads: 0,
             quit: false,
+            gives_up,
         }
     }
 
@@ -158,6 +149,7 @@ impl Engine {
             Mode::Seeking { .. } => self.advance_seek(),
             Mode::Showing { .. } => self.advance_show(),
             Mode::Computing => self.advance_run(),
+            Mode::Stepping => self.advance_step(),
             Mode::Paused | Mode::Loading(_) => {}
         }
         let is_due = self.outbox.is_urgent || self.outbox.wait().is_zero();
@@ -208,7 +200,7 @@ impl Engine {
 
     /// How long nothing is to be done; none where only a command changes that.
     pub(super) fn wait(&mut self) -> Option<Duration> {
-        if self.mode.seeks() {
+        if self.mode.seeks() || matches!(self.mode, Mode::Stepping) {
             return Some(Duration::ZERO);
         }
         let frame = self.outbox.is_behind.then(|| self.outbox.wait());
@@ -219,6 +211,7 @@ impl Engine {
     fn wait_for_step(&mut self) -> Duration {
         match self.mode {
             Mode::Showing { .. } => self.outbox.wait(),
+            _ if self.history.present.is_on_its_way() => Duration::ZERO,
             _ => self.clock.wait(self.history.present.time_secs()),
         }
     }
@@ -260,6 +253,9 @@ impl Engine {
             Command::Step => {
                 self.mode = Mode::Paused;
                 self.tick();
+                if self.history.present.is_on_its_way() {
+                    self.mode = Mode::Stepping;
+                }
             }
             Command::Seek(time_secs) => self.seek(time_secs, false),
             Command::SetPace(pace) => self.set_pace(pace),
@@ -322,6 +318,7 @@ impl Engine {
         match self.mode {
             Mode::Showing { until_secs } => self.seek(until_secs, false),
             Mode::Seeking { .. } => self.mode = Mode::Seeking { then_plays: false },
+            _ if self.history.present.is_on_its_way() => self.mode = Mode::Stepping,
             _ => self.mode = Mode::Paused,
         }
     }
@@ -370,6 +367,14 @@ impl Engine {
         self.outbox.is_behind = true;
     }
 
+    fn advance_step(&mut self) {
+        self.tick();
+        if !self.history.present.is_on_its_way() {
+            self.mode = Mode::Paused;
+            self.publish();
+        }
+    }
+
     /// Takes the step that is due, and stops where the run is to.
     fn advance_run(&mut self) {
         if !self.wait_for_step().is_zero() {
@@ -377,6 +382,9 @@ impl Engine {
         }
         self.tick();
         let run = &self.history.present;
+        if run.is_on_its_way() {
+            return;
+        }
         let end_secs = run.time_secs() + 0.5 * run.time_step_secs();
         if self.stop_at_secs.is_some_and(|stop| end_secs >= stop) {
             self.mode = Mode::Paused;
@@ -411,10 +419,9 @@ impl Engine {
 
     /// True if a command came that makes the present loading pointless. The others wait.
     fn is_interrupted(&mut self) -> bool {
-        let mut interrupted = false;
+        let mut interrupted = (self.gives_up)();
         while let Ok((number, command)) = self.inbox.try_recv() {
-            interrupted |=
-                matches!(command, Command::CancelLoading | Command::Load(_) | Command::Quit);
+            interrupted |= command.interrupts();
             self.waiting.push_back((number, command));
         }
         interrupted
@@ -478,7 +485,7 @@ impl Engine {
             playing: self.mode.plays(),
             replaying: run.replays(),
             branching: run.branches(),
-            seeking: self.mode.seeks(),
+            seeking: self.mode.seeks() || matches!(self.mode, Mode::Stepping),
             stored: shown_secs.is_some(),
             loading,
             refusal: self.refusal.clone(),

@@ -6,7 +6,7 @@ use std::time::Duration;
 use triple_buffer::{Output, triple_buffer};
 
 use super::engine::Engine;
-use super::remote::RemoteRun;
+use super::remote::{Ask, RemoteRun};
 use super::{Command, LiveFrame};
 use crate::error::{Error, Result};
 
@@ -18,6 +18,8 @@ const STACK_BYTES: usize = 32 << 20;
 pub struct LiveOptions {
     /// Called on the solver's thread after each new frame.
     pub wake: Box<dyn Fn() + Send>,
+    /// Asked while a start is made: true where that is to be given up, though no command could come in meanwhile.
+    pub gives_up: Box<dyn Fn() -> bool + Send>,
     /// Least time between two frames while the run goes on.
     pub frame_interval: Duration,
     /// Memory for keyframes, of all worlds together.
@@ -29,6 +31,7 @@ impl Default for LiveOptions {
     fn default() -> Self {
         Self {
             wake: Box::new(|| {}),
+            gives_up: Box::new(|| false),
             frame_interval: Duration::from_micros(16_600),
             recording_bytes: 96 << 20,
         }
@@ -66,10 +69,10 @@ impl Live {
         Ok(Self { place: Place::Thread { commands, frames }, sent: 0 })
     }
 
-    /// A run that a [`RemoteEngine`](super::RemoteEngine) computes: `post` brings messages there, and what it posts comes
+    /// A run that a [`RemoteEngine`](super::RemoteEngine) computes: `ask` brings messages there, and what it posts comes
     /// in by `inbox`.
-    pub fn remote(post: Box<dyn FnMut(Vec<u8>)>, inbox: Receiver<Vec<u8>>) -> Self {
-        Self { place: Place::Remote(Box::new(RemoteRun::new(post, inbox))), sent: 0 }
+    pub fn remote(ask: Ask, inbox: Receiver<Vec<u8>>) -> Self {
+        Self { place: Place::Remote(Box::new(RemoteRun::new(ask, inbox))), sent: 0 }
     }
 
     /// Sends a command and returns its number, which [`LiveFrame::acknowledged`] reaches once the

@@ -2,12 +2,14 @@
 //! Nothing that was computed is lost by a reset, by other worlds, or by going on differently from an earlier moment.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 
 use super::stored_moments::{STORED_BYTES, StoredMoments};
 use super::{Controls, Curve, LiveOptions, LiveStart, LoadingProgress, WorldHistory};
+use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
@@ -22,6 +24,9 @@ const PAST_KEYFRAME_BYTES: usize = 1 << 20;
 /// Rows of each of their curves at the most; a row is some 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
+/// After this time a tick lets commands in. A world whose time step is far shorter than the leader's takes thousands of
+/// steps to one of the leader's.
+const SLICE: Duration = Duration::from_millis(50);
 /// Steps of each world between two words of progress.
 const STEPS_AT_ONCE: u64 = 8;
 
@@ -37,6 +42,9 @@ pub(super) struct LiveRun {
     /// What an earlier run is called up by.
     #[serde(skip)]
     number: u64,
+    /// The simulated time that its worlds are on the way to in a tick that takes long, s.
+    #[serde(skip)]
+    goal_secs: Option<f64>,
 }
 
 /// Has each world do something, side by side where there are several. Whether all say yes.
@@ -108,19 +116,30 @@ impl LiveRun {
         self.worlds.iter().map(WorldHistory::steps).sum()
     }
 
-    /// One step of the leader, and as many of the others as bring them to the same time. Returns
-    /// the number of steps of all worlds, and whether all succeeded.
+    /// One step of the leader, and as many of the others as bring them to the same time, or as many of these as come in a
+    /// slice of time: then they are on their way, and the next tick goes on with it. Returns the number of steps of all
+    /// worlds, and whether all succeeded.
     pub(super) fn tick(&mut self) -> (u64, bool) {
         let steps_before = self.steps();
-        let target_secs = self.time_secs() + self.time_step_secs();
+        let goal_secs = self.goal_secs.take();
+        let goal_secs = goal_secs.unwrap_or_else(|| self.time_secs() + self.time_step_secs());
+        let until = Instant::now() + SLICE;
         let all_well = match self.worlds.as_mut_slice() {
             [world] => world.step(),
-            worlds => each(worlds, |world| world.catch_up(target_secs)),
+            worlds => each(worlds, |world| world.catch_up(goal_secs, until)),
         };
+        let lags = self.worlds.len() > 1 && self.worlds.iter().any(|it| it.is_before(goal_secs));
+        self.goal_secs = (lags && all_well).then_some(goal_secs);
         (self.steps() - steps_before, all_well)
     }
 
+    /// True while a tick is not at its end.
+    pub(super) fn is_on_its_way(&self) -> bool {
+        self.goal_secs.is_some()
+    }
+
     pub(super) fn seek(&mut self, time_secs: f64) {
+        self.goal_secs = None;
         self.worlds.iter_mut().for_each(|world| world.seek(time_secs));
     }
 

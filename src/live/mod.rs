@@ -16,15 +16,15 @@ mod remote;
 mod stored_moments;
 mod world_history;
 
+pub(crate) use clock::receive_within;
 pub(crate) use command::as_json;
 pub use command::{
     Command, LiveStart, LoadingProgress, Pace, Preview, StartSource, StartTaker, Taker, Tell,
 };
 pub use curve::Curve;
-pub(crate) use engine::receive_within;
 pub use frame::{LiveFrame, WorldAlarm, WorldFrame};
 pub use handle::{Live, LiveOptions};
 pub use history::{PastRun, PastWorld, RunHistory, WorldPlan};
 pub use record::{Controls, ControlsChange, HandEdit, WorldRecord};
-pub use remote::{Post, RemoteEngine, source_to_bytes};
+pub use remote::{Ask, Post, RemoteEngine, source_to_bytes};
 pub use world_history::WorldHistory;

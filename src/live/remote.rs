@@ -98,20 +98,24 @@ enum Waiting {
     All(StartTaker),
 }
 
+/// What brings bytes to whoever computes, and says whether a start that is being made is to be given up for them.
+pub type Ask = Box<dyn FnMut(Vec<u8>, bool)>;
+
 /// The window's side.
 pub(super) struct RemoteRun {
-    post: Box<dyn FnMut(Vec<u8>)>,
+    ask: Ask,
     inbox: Receiver<Vec<u8>>,
     frame: LiveFrame,
     waiting: HashMap<u64, Waiting>,
 }
 
 impl RemoteRun {
-    pub(super) fn new(post: Box<dyn FnMut(Vec<u8>)>, inbox: Receiver<Vec<u8>>) -> Self {
-        Self { post, inbox, frame: LiveFrame::default(), waiting: HashMap::new() }
+    pub(super) fn new(ask: Ask, inbox: Receiver<Vec<u8>>) -> Self {
+        Self { ask, inbox, frame: LiveFrame::default(), waiting: HashMap::new() }
     }
 
     pub(super) fn send(&mut self, number: u64, command: Command) {
+        let interrupts = command.interrupts();
         let request = match command {
             Command::Load(source) => match source.to_bytes() {
                 Ok(bytes) => Request::Load(number, bytes),
@@ -127,7 +131,7 @@ impl RemoteRun {
             }
             command => Request::Command(number, command),
         };
-        self.post(&request);
+        self.ask(&request, interrupts);
     }
 
     pub(super) fn latest(&mut self) -> &LiveFrame {
@@ -135,7 +139,7 @@ impl RemoteRun {
             match read(&bytes) {
                 Ok(Reply::Frame(change)) => {
                     self.frame = change.after(std::mem::take(&mut self.frame));
-                    self.post(&Request::Seen);
+                    self.ask(&Request::Seen, false);
                 }
                 Ok(Reply::Taken(number, start, world)) => {
                     if let Some(Waiting::World(taker)) = self.waiting.remove(&number) {
@@ -153,9 +157,9 @@ impl RemoteRun {
         &self.frame
     }
 
-    fn post(&mut self, request: &Request) {
+    fn ask(&mut self, request: &Request, interrupts: bool) {
         match written(request) {
-            Ok(bytes) => (self.post)(bytes),
+            Ok(bytes) => (self.ask)(bytes, interrupts),
             Err(refusal) => self.refuse(refusal),
         }
     }

@@ -131,11 +131,20 @@ impl WorldHistory {
         self.step_secs += weight * (secs - self.step_secs);
     }
 
-    /// Steps until the time of the world is the one nearest to `time_secs`. Whether all succeeded.
-    pub(super) fn catch_up(&mut self, time_secs: f64) -> bool {
-        while self.simulation.time_secs() + 0.5 * self.time_step_secs() < time_secs {
+    /// True if another step brings its time closer to that.
+    pub(super) fn is_before(&self, time_secs: f64) -> bool {
+        self.simulation.time_secs() + 0.5 * self.time_step_secs() < time_secs
+    }
+
+    /// Steps until the time of the world is the one nearest to `time_secs`, or until the time on the wall is up, once at
+    /// least. Whether all succeeded.
+    pub(super) fn catch_up(&mut self, time_secs: f64, until: Instant) -> bool {
+        while self.is_before(time_secs) {
             if !self.step() {
                 return false;
+            }
+            if Instant::now() >= until {
+                break;
             }
         }
         true

@@ -60,6 +60,27 @@ fn a_number_that_is_typed_starts_the_pile_again_as_well() {
     assert!(robot.state().frame.playing && robot.state().frame.past.len() == 1);
 }
 
+/// Walls that a force drives, grains that stay where they are, one axis: each scene has a start to go back to.
+#[test]
+fn every_scene_starts_again_with_the_new_value() {
+    let mut robot = open(pile());
+    for info in SCENES {
+        robot.load(Config::of_scene(info.name));
+        let start = robot.bits();
+        robot.take_steps(3);
+        let time_step_secs = 0.5 * robot.settings().parameters.time_step_secs;
+        robot.type_number("Δt, time step", &time_step_secs.to_string());
+        assert!(robot.state().frame.playing, "{}", info.name);
+        robot.key(egui::Key::Space);
+        let row = robot.observables();
+        assert_eq!(row.time_step_secs, time_step_secs, "{}", info.name);
+        let since_start = (row.time_secs / time_step_secs).round() as u64;
+        assert_eq!(row.step, since_start, "{}: no step of the old length", info.name);
+        robot.seek(0.0);
+        assert_eq!(robot.bits(), start, "{}", info.name);
+    }
+}
+
 #[test]
 fn in_a_comparison_only_the_chosen_world_changes() {
     let mut robot = open(pile());

@@ -223,6 +223,36 @@ fn compared_worlds_share_their_simulated_time() {
 }
 
 #[test]
+fn a_step_beside_a_far_longer_one_takes_many_and_ends_at_the_same_time() {
+    let mut robot = Robot::open(pile());
+    let base = robot.settings();
+    robot.send(Command::Compare(vec![base.over(2e-7), base.over(1e-3)]));
+    robot.state_mut().step();
+    robot.until("the middle of the step", |state| state.frame.seeking);
+    robot.settle();
+    assert!(!robot.state().frame.playing);
+    let rows = robot.of_worlds(|world| world.snapshot.observables);
+    assert_eq!([rows[0].step, rows[1].step], [5000, 1], "more than come in a slice of time");
+    assert!((rows[0].time_secs - rows[1].time_secs).abs() < 1e-9, "{}", rows[0].time_secs);
+}
+
+#[test]
+fn a_world_that_would_never_catch_up_lets_commands_in() {
+    let mut robot = Robot::open(pile());
+    let base = robot.settings();
+    robot.send(Command::Compare(vec![base.over(1e-4), base.over(1e6)]));
+    for plays in [false, true] {
+        match plays {
+            true => robot.state_mut().live.send(Command::Play),
+            false => robot.state_mut().live.send(Command::Step),
+        };
+        robot.until("some steps", |state| state.frame.worlds[0].snapshot.observables.step > 3);
+        robot.key(egui::Key::R);
+        assert_eq!(robot.steps(), 0);
+    }
+}
+
+#[test]
 fn two_laws_stand_side_by_side() {
     let mut robot = Robot::open(pile());
     robot.clicks(&["Compare", "Two laws"]);

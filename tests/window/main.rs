@@ -15,6 +15,7 @@ mod front;
 mod hand;
 mod lessons;
 mod looking;
+mod monkey;
 mod other_piles;
 mod pictures;
 mod provenance;

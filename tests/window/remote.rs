@@ -1,41 +1,54 @@
 //! A run that is computed where no memory is shared, by bytes alone, is the run of a thread.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use serde::de::DeserializeOwned;
 use slump::config::Config;
 use slump::live::{
-    Command, Curve, Live, LiveFrame, LiveOptions, LiveStart, RemoteEngine, StartSource,
-    WorldHistory,
+    Command, Curve, Live, LiveFrame, LiveOptions, LiveStart, LoadingProgress, RemoteEngine,
+    StartSource, Tell, WorldHistory,
 };
 use slump::sim::Settings;
 
 /// Both sides, with what is on its way between them.
-struct Remote {
+struct Remote<S = LiveStart> {
     live: Live,
-    engine: RemoteEngine<LiveStart>,
-    requests: Receiver<Vec<u8>>,
+    engine: RemoteEngine<S>,
+    /// Each with whether a start is to be given up for it.
+    requests: Receiver<(Vec<u8>, bool)>,
     replies: Receiver<Vec<u8>>,
     to_window: Sender<Vec<u8>>,
     bytes: usize,
+    interruptions: usize,
 }
 
 impl Remote {
     fn new() -> Self {
+        Self::with(LiveOptions::default())
+    }
+}
+
+impl<S: StartSource + DeserializeOwned> Remote<S> {
+    fn with(options: LiveOptions) -> Self {
         let (post_request, requests) = channel();
         let (post_reply, replies) = channel();
         let (to_window, inbox) = channel();
-        let post = Box::new(move |bytes| post_request.send(bytes).expect("a reader"));
+        let ask = Box::new(move |bytes, interrupts| {
+            post_request.send((bytes, interrupts)).expect("a reader");
+        });
         let reply = Box::new(move |bytes| post_reply.send(bytes).expect("a reader"));
-        let live = Live::remote(post, inbox);
-        let engine = RemoteEngine::new(reply, LiveOptions::default());
-        Self { live, engine, requests, replies, to_window, bytes: 0 }
+        let live = Live::remote(ask, inbox);
+        let engine = RemoteEngine::new(reply, options);
+        Self { live, engine, requests, replies, to_window, bytes: 0, interruptions: 0 }
     }
 
     /// Lets both work until a frame is as wanted.
     fn until(&mut self, wanted: impl Fn(&LiveFrame) -> bool) -> LiveFrame {
         let begun = std::time::Instant::now();
         loop {
-            for message in self.requests.try_iter() {
+            for (message, interrupts) in self.requests.try_iter() {
+                self.interruptions += usize::from(interrupts);
                 self.engine.receive(&message).expect("a message");
             }
             self.engine.turn();
@@ -182,4 +195,50 @@ fn what_cannot_be_made_remotely_is_refused_in_a_sentence() {
     remote.live.send(Command::Load(Box::new(None(broken))));
     let refusal = remote.live.latest().refusal.clone().expect("a refusal");
     assert_eq!(&*refusal, "start is here alone, but must be one that can be sent");
+}
+
+/// True once the window has asked for something that makes the present start pointless.
+static IS_POINTLESS: AtomicBool = AtomicBool::new(false);
+
+/// A pile that rains until nobody waits for it, or one that is there.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Rain {
+    is_endless: bool,
+}
+
+impl StartSource for Rain {
+    fn make(self: Box<Self>, tell: Tell<'_>) -> slump::error::Result<LiveStart> {
+        let mut told = 0;
+        while self.is_endless {
+            told += 1;
+            // No message comes in meanwhile; the window asks for an end by other means.
+            IS_POINTLESS.store(told == 100, Ordering::Relaxed);
+            if !tell(LoadingProgress::default()) {
+                assert_eq!(told, 100, "given up when it was asked for");
+                return Err(slump::error::Error::value("rain", "given up", "waited for"));
+            }
+        }
+        Ok(start())
+    }
+
+    fn to_bytes(&self) -> slump::error::Result<Vec<u8>> {
+        slump::live::source_to_bytes(self)
+    }
+}
+
+#[test]
+fn a_start_that_is_made_remotely_is_given_up_though_no_message_comes_in() {
+    let gives_up = Box::new(|| IS_POINTLESS.load(Ordering::Relaxed));
+    let mut remote = Remote::<Rain>::with(LiveOptions { gives_up, ..LiveOptions::default() });
+    remote.live.send(Command::Load(Box::new(Rain { is_endless: false })));
+    remote.live.send(Command::Step);
+    assert_eq!((remote.done().loads, remote.interruptions), (1, 1));
+    remote.live.send(Command::Load(Box::new(Rain { is_endless: true })));
+    remote.done();
+    // What asked for the end comes after it.
+    remote.live.send(Command::CancelLoading);
+    let frame = remote.done();
+    assert!(frame.loading.is_none() && frame.refusal.is_none(), "giving up is no failure");
+    assert_eq!((frame.loads, frame.worlds[0].snapshot.observables.step), (1, 1), "what was there");
+    assert_eq!(remote.interruptions, 3, "a start, another, and the end of that");
 }

@@ -14,8 +14,10 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 extern "C" {
-    /// Brings a message from the page to its worker.
-    fn slump_ask(message: Vec<u8>);
+    /// Brings a message from the page to its worker, which gives up the start that it is making where that is pointless.
+    fn slump_ask(message: Vec<u8>, interrupts: bool);
+    /// True where the worker is to give it up.
+    fn slump_gives_up() -> bool;
     /// Brings a message from the worker to its page.
     fn slump_answer(message: Vec<u8>);
     /// Has the browser save a file.
@@ -35,7 +37,7 @@ impl Engine {
     #[allow(clippy::new_without_default, reason = "a page asks for it by `new`")]
     pub fn new() -> Self {
         console_error_panic_hook::set_once();
-        Self(browser::engine(Box::new(slump_answer)))
+        Self(browser::engine(Box::new(slump_answer), slump_gives_up))
     }
 
     /// Takes in a message of the page.

@@ -26,8 +26,18 @@ globalThis.slump_save = (name, bytes) => {
 
 try {
     const worker = new Worker("worker.js", { type: "module" });
-    globalThis.slump_ask = (message) => worker.postMessage(message, [message.buffer]);
+    // While it makes a start the worker takes in no message. It looks whether this address is still there: it goes where
+    // the start is to be given up, and each message that asks for that brings the next one.
+    let address = null;
+    globalThis.slump_ask = (message, interrupts) => {
+        if (interrupts) {
+            if (address) URL.revokeObjectURL(address);
+            address = URL.createObjectURL(new Blob(["here"]));
+        }
+        worker.postMessage({ message, address }, [message.buffer]);
+    };
     globalThis.slump_answer = () => {};
+    globalThis.slump_gives_up = () => false;
     const early = [];
     worker.onmessage = (event) => early.push(event.data);
     worker.onerror = (event) => fail(event.message);

@@ -5,9 +5,25 @@ const early = [];
 let engine = null;
 let timer = 0;
 let is_due = false;
+let address = null;
+let looked_at = 0;
 
 globalThis.slump_answer = (message) => postMessage(message, [message.buffer]);
 for (const name of ["slump_ask", "slump_save", "slump_store"]) globalThis[name] = () => {};
+
+// True once the page has taken the address away that came with the last message. To look takes a millisecond.
+globalThis.slump_gives_up = () => {
+    if (!address || performance.now() - looked_at < 100) return false;
+    looked_at = performance.now();
+    try {
+        const look = new XMLHttpRequest();
+        look.open("GET", address, false);
+        look.send();
+        return false;
+    } catch {
+        return true;
+    }
+};
 
 // A message to itself comes at once and after those that wait; a timer would take 4 ms.
 const self_channel = new MessageChannel();
@@ -27,10 +43,16 @@ function turn() {
     else if (wait > 0) timer = setTimeout(turn_soon, wait);
 }
 
+function receive(data) {
+    address = data.address;
+    engine.receive(data.message);
+    turn_soon();
+}
+
 async function start(module) {
     await init({ module_or_path: module });
     engine = new Engine();
-    early.forEach((message) => engine.receive(message));
+    early.forEach(receive);
     turn_soon();
 }
 
@@ -38,8 +60,7 @@ self.onmessage = ({ data }) => {
     if (data instanceof WebAssembly.Module) {
         start(data);
     } else if (engine) {
-        engine.receive(data);
-        turn_soon();
+        receive(data);
     } else {
         early.push(data);
     }

@@ -1,0 +1,167 @@
+//! Somebody without a plan: clicks, drags, types and presses keys at random, wherever there is a control. The window must
+//! neither panic nor hang, and memory must not grow without end.
+
+use egui::{Key, Role};
+use rand::seq::IndexedRandom;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::robot::*;
+
+/// What is typed into fields.
+const TEXTS: [&str; 9] =
+    ["0", "1e9", "-3", "nonsense", "", "0.5", "1e-4", "N > 0 and y < 2", "force > 1e-3"];
+const KEYS: [Key; 12] = [
+    Key::Space,
+    Key::ArrowRight,
+    Key::ArrowLeft,
+    Key::R,
+    Key::F,
+    Key::B,
+    Key::OpenBracket,
+    Key::CloseBracket,
+    Key::Escape,
+    Key::H,
+    Key::Tab,
+    Key::Enter,
+];
+
+fn is_control(role: Role) -> bool {
+    matches!(
+        role,
+        Role::Button
+            | Role::ComboBox
+            | Role::CheckBox
+            | Role::RadioButton
+            | Role::Slider
+            | Role::SpinButton
+            | Role::TextInput
+    )
+}
+
+/// Does one thing, and gives the name of the control that it was done to.
+fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
+    if random.random_ratio(1, 6) {
+        let key = *KEYS.choose(random).expect("some keys");
+        robot.harness.key_press(key);
+        return format!("{key:?}");
+    }
+    if random.random_ratio(1, 12) {
+        let place = |random: &mut Pcg64Mcg| {
+            egui::pos2(random.random_range(0.0..1000.0), random.random_range(0.0..700.0))
+        };
+        let (from, to) = (place(random), place(random));
+        robot.drag(from, to);
+        robot.button(to, false);
+        return format!("{from:?} to {to:?}");
+    }
+    let (role, name, rect) = {
+        let root = robot.harness.root();
+        let all = root.children_recursive();
+        let all: Vec<_> = all
+            .filter(|node| {
+                let node = node.accesskit_node();
+                is_control(node.role()) && !node.is_disabled()
+            })
+            .collect();
+        let Some(node) = all.choose(random) else { return "nothing".into() };
+        let (role, name) = (node.accesskit_node().role(), node.accesskit_node().label());
+        match role {
+            Role::TextInput => node.focus(),
+            Role::Slider => (),
+            _ => node.click(),
+        }
+        (role, name.unwrap_or_default(), node.rect())
+    };
+    robot.harness.step();
+    match role {
+        Role::TextInput => {
+            let text = *TEXTS.choose(random).expect("some texts");
+            robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+            robot.harness.event(egui::Event::Text(text.to_owned()));
+            robot.harness.step();
+            robot.harness.key_press(Key::Enter);
+        }
+        Role::Slider => {
+            let at = |part: f32| rect.left_center() + egui::vec2(part * rect.width(), 0.0);
+            let (from, to) = (at(random.random()), at(random.random()));
+            robot.drag(from, to);
+            robot.button(to, false);
+        }
+        _ => (),
+    }
+    format!("{role:?} {name}")
+}
+
+/// Acts for a while, and gives what was done and the largest memory, MiB.
+fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
+    let files = folder();
+    let mut robot = Robot::open(Config::default());
+    robot.state_mut().preferences.folder = files.path().to_owned();
+    robot.state_mut().preferences.starts_again = true;
+    robot.state_mut().visit(0);
+    robot.settle();
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let (begun, mut acts, mut most) = (Instant::now(), Vec::new(), 0);
+    let mut answered = Instant::now();
+    while begun.elapsed() < duration {
+        let done = act(&mut robot, &mut random);
+        // What was typed as a folder is none of the test's.
+        robot.state_mut().preferences.folder = files.path().to_owned();
+        robot.frames(2);
+        std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
+        most = most.max(resident_mib());
+        acts.push(done);
+        let state = robot.state();
+        let waits = state.frame.acknowledged < state.live.sent();
+        if !waits {
+            answered = Instant::now();
+        }
+        if answered.elapsed() > Duration::from_secs(10) && std::env::var_os("MK").is_some() {
+            println!(
+                "{:.0} s: silent since {:.0} s after {:?}; {:?}",
+                begun.elapsed().as_secs_f64(),
+                answered.elapsed().as_secs_f64(),
+                &acts[acts.len().saturating_sub(60)..],
+                state.world().map(|w| w.controls.settings)
+            );
+            println!(
+                "loading {:?}",
+                state.frame.loading.as_ref().map(|l| (l.text.clone(), l.part))
+            );
+            std::thread::sleep(Duration::from_secs(60));
+            std::process::exit(3);
+        }
+    }
+    // The solver's thread still does what it is asked to.
+    robot.send(Command::CancelLoading);
+    robot.load(Config::of_scene("cradle"));
+    robot.take_steps(3);
+    assert_eq!(robot.steps(), 3, "after {acts:?}");
+    (acts, most)
+}
+
+/// What the process has of the machine's memory; 0 where the system does not tell.
+fn resident_mib() -> usize {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kib = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<usize>().ok());
+    kib.unwrap_or(0) / 1024
+}
+
+#[test]
+fn somebody_without_a_plan_breaks_nothing() {
+    let (acts, _) = play(1, Duration::from_secs(8));
+    assert!(acts.len() > 40, "{} acts", acts.len());
+}
+
+/// `SLUMP_SEED=7 cargo test --release --test window ten_minutes -- --ignored --nocapture`
+#[test]
+#[ignore = "takes ten minutes"]
+fn ten_minutes_without_a_plan_need_less_than_600_mib() {
+    let seed = std::env::var("SLUMP_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
+    let (acts, most) = play(seed, Duration::from_secs(600));
+    let kinds = acts.iter().collect::<std::collections::BTreeSet<_>>().len();
+    println!("seed {seed}: {} acts of {kinds} kinds, {most} MiB at most", acts.len());
+    assert!(most < 600, "{most} MiB");
+}
