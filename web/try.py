@@ -167,6 +167,19 @@ try:
     print(f"lesson 1 to its end at {told['time_secs']:.3f} s, {rate:.0f} frames of the run a second")
     browser.picture("end")
 
+    # While grains rain the worker takes nothing in; it gives up all the same.
+    browser.click(middle(browser.told(), "more"))
+    browser.click(middle(browser.until("the page Pile", lambda told: "new pile" in told["controls"]), "new pile"))
+    browser.until("it rains", lambda told: told["loading"] and "cancel" in told["controls"])
+    time.sleep(1)
+    assert browser.told()["loading"], "the pile is there before it could be given up"
+    browser.picture("rain")
+    begun = time.time()
+    browser.click(middle(browser.told(), "cancel"))
+    given_up = browser.until("it is given up", lambda given_up: not given_up["loading"])
+    print(f"a new pile is given up after {time.time() - begun:.1f} s")
+    assert given_up["state_hash"] == told["state_hash"], "what was there before is gone"
+
     alike = {}
     for scene in SCENES:
         for stepper in STEPPERS:

@@ -214,6 +214,7 @@ impl AppState {
     pub fn visit(&mut self, at: usize) {
         self.preferences.visit(at);
         self.touring = true;
+        self.shown.loads_before_lesson = self.frame.loads;
         self.live.send(Command::SetPace(self.preferences.pace()));
         self.open(Opening::Lesson(self.preferences.lesson.at));
     }
@@ -292,8 +293,22 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         });
     });
     if state.touring {
-        ui.label(LESSONS[at].watch);
+        let is_changed = has_other_worlds(state, &LESSONS[at]);
+        ui.label(if is_changed { OTHER_WORLDS } else { LESSONS[at].watch });
     }
+}
+
+/// What is said in place of a lesson's sentences where they are no longer true.
+const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has it as it was.";
+
+/// True where worlds that a lesson compares are no longer those that it speaks of. Of one world alone, lessons say what to
+/// change.
+fn has_other_worlds(state: &AppState, lesson: &Lesson) -> bool {
+    let Some(start) = &state.frame.start else { return false };
+    let worlds = (lesson.worlds)(*start.settings());
+    let is_there = state.frame.loads > state.shown.loads_before_lesson;
+    let shown = state.frame.worlds.iter().map(|world| &world.controls.settings);
+    is_there && worlds.len() > 1 && !shown.eq(&worlds)
 }
 
 /// All lessons, to be gone to; the one that was left is marked.

@@ -21,6 +21,8 @@ const LEAST_WIDTH: f32 = 150.0;
 const LEAST_SLUMP: f64 = 0.4;
 /// Least height of a vertical axis, as a part of its largest value.
 const LEAST_SPAN: f64 = 1e-3;
+/// The same of one that is logarithmic: two powers of ten are within it wherever it lies.
+const LEAST_DECADES: f64 = 2.0;
 /// The quantity that other piles are told of.
 const OTHERS: &str = "slump";
 /// How strong the colour of single other piles is.
@@ -125,9 +127,7 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     let group = egui::Id::unique("time");
     let [least, most] = least_span(data, quantity, factor);
     let height = (ui.available_height() - 2.0).max(40.0);
-    // A ghost of a long run does not stretch the axis of a short one.
-    let ends = data.worlds.iter().filter_map(|world| world.curve.rows().last());
-    let until_secs = ends.map(|row| row.time_secs).fold(data.until_secs, f64::max);
+    let until_secs = end_secs(data);
     let response = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " s")
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
@@ -168,21 +168,31 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
 }
 
+/// Where the axis of time ends, s. A ghost of a long run does not stretch that of a short one.
+fn end_secs(data: &PlotData) -> f64 {
+    let ends = data.worlds.iter().filter_map(|world| world.curve.last());
+    ends.map(|row| row.time_secs).fold(data.until_secs, f64::max)
+}
+
+/// What is known of others at the moment that is shown: before a pile is released, nothing is told of how it ends.
+fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
+    points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
+}
+
 /// A world's other piles as thin lines and their mean as a dashed one, up to the moment that is shown.
 fn others(plot: &mut PlotUi<'_>, world: &WorldCurve, now_secs: f64) {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else { return };
-    let until_now = |points: &[[f64; 2]]| -> PlotPoints<'_> {
-        points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
-    };
     for run in &band.runs {
-        let line = Line::new(format!("{}: another pile", world.name), until_now(run));
+        let line = Line::new(format!("{}: another pile", world.name), until_now(run, now_secs));
         plot.line(line.color(world.colour.gamma_multiply(OTHERS_STRENGTH)).width(0.8));
     }
     let mean: Vec<_> =
         band.times_secs.iter().zip(&band.means).map(|(&at, &mean)| [at, mean]).collect();
     let name = format!("{}: mean of {} other piles", world.name, band.count);
     let style = LineStyle::Dashed { length: 5.0 };
-    plot.line(Line::new(name, until_now(&mean)).color(world.colour).style(style).width(1.2));
+    plot.line(
+        Line::new(name, until_now(&mean, now_secs)).color(world.colour).style(style).width(1.2),
+    );
 }
 
 /// What a vertical axis shows at least: around values that hardly differ, more than the digits of their rounding.
@@ -198,7 +208,7 @@ fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) ->
         (low, high) = (low.min(0.0), high.max(LEAST_SLUMP));
     }
     let most = low.abs().max(high.abs());
-    let least = if quantity.logarithmic { 1.0 } else { LEAST_SPAN * most };
+    let least = if quantity.logarithmic { LEAST_DECADES } else { LEAST_SPAN * most };
     let room = (0.5 * (least - (high - low))).max(0.0);
     [low - room, high + room]
 }
@@ -237,14 +247,19 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     (title, factor)
 }
 
-/// Four marks at the most, at round numbers, or at whole powers of ten.
+/// Two to five marks at round numbers, or at whole powers of ten.
 fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     if log {
-        let step_size = ((high - low) / 3.0).ceil().max(1.0);
-        let marks = (low / step_size).ceil() as i64..=(high / step_size).floor() as i64;
+        let marks = |step: i64| {
+            let ends = [low, high].map(|end| end / step as f64);
+            ends[0].ceil() as i64..=ends[1].floor() as i64
+        };
+        let widest = (((high - low) / 3.0).ceil() as i64).max(1);
+        let step = (1..=widest).rev().find(|&step| marks(step).count() > 1).unwrap_or(1);
+        let step_size = step as f64;
         let mark = |count: i64| GridMark { value: count as f64 * step_size, step_size };
-        return marks.map(mark).collect();
+        return marks(step).map(mark).collect();
     }
     let (values, step_size) = ticks(low, high, 4);
     values.into_iter().map(|value| GridMark { value, step_size }).collect()
@@ -410,6 +425,57 @@ mod tests {
         assert!(plot.points(rows.iter()).is_empty());
         plot.axes[1] = "of another version".into();
         assert!(plot.points(rows.iter()).is_empty() && plot.title().is_none());
+    }
+
+    fn curve_until(end_secs: f64) -> Curve {
+        let mut curve = Curve::default();
+        for (step, time_secs) in [0.0, 0.5 * end_secs, end_secs].into_iter().enumerate() {
+            curve.push(Observables { step: step as u64, time_secs, ..Observables::default() });
+        }
+        curve
+    }
+
+    #[test]
+    fn a_ghost_of_a_long_run_does_not_stretch_the_axis_of_a_short_one() {
+        let world = WorldCurve {
+            name: String::new(),
+            colour: Color32::RED,
+            curve: curve_until(1.5),
+            others: None,
+        };
+        let data = PlotData {
+            worlds: vec![world],
+            ghosts: vec![curve_until(9.0)],
+            quantities: Vec::new(),
+            chosen: ChosenPlot::default(),
+            now_secs: 0.0,
+            until_secs: 1.0,
+        };
+        assert_eq!(end_secs(&data), 1.5, "its own end alone counts");
+        assert_eq!(end_secs(&PlotData { worlds: Vec::new(), ..data }), 1.0);
+    }
+
+    #[test]
+    fn the_end_of_other_piles_is_not_told_before_the_release() {
+        let points = [[0.0, 0.0], [0.1, 0.2], [0.2, 0.4]];
+        let shown = |now_secs| until_now(&points, now_secs).points().len();
+        assert_eq!([shown(0.0), shown(0.15), shown(1.0)], [1, 2, 3]);
+    }
+
+    #[test]
+    fn an_axis_never_has_one_number_alone() {
+        let grid = |low, high| GridInput { bounds: (low, high), base_step_size: 1.0 };
+        for place in 0..400 {
+            let low = -7.3 + 0.037 * f64::from(place);
+            for span in [1e-6, 1e-3, 0.4, 1.0, 2.0, 3.2, 5.7, 6.1, 9.0, 1e3] {
+                let count = round_marks(grid(low, low + span), false).len();
+                assert!((2..=5).contains(&count), "{low} and {span} more: {count}");
+                if span >= LEAST_DECADES {
+                    let count = round_marks(grid(low, low + span), true).len();
+                    assert!((2..=5).contains(&count), "1e{low} and {span} decades more: {count}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -82,6 +82,8 @@ pub(crate) struct Shown {
     pub restart_graphics: bool,
     pub(super) legend: LegendCache,
     pub(super) gallery: Gallery,
+    /// How many starts there were before the present lesson's.
+    pub(super) loads_before_lesson: u64,
     pub(super) table: Table,
     notice: Option<Notice>,
 }

@@ -20,6 +20,7 @@ pub(super) fn told(
     serde_json::json!({
         "scene": state.frame.start.as_ref().map(|start| start.scene.name.as_str()),
         "playing": state.frame.playing,
+        "loading": state.frame.loading.is_some(),
         "step": last.step,
         "time_secs": last.time_secs,
         "slump": last.slump,

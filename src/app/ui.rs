@@ -131,7 +131,9 @@ fn waiting(ui: &mut Ui, state: &mut AppState) {
             ui.set_max_width(360.0);
             ui.label(if progress.text.is_empty() { "Loading" } else { &progress.text });
             ui.horizontal(|ui| {
-                if ui.button("Cancel").clicked() {
+                let cancel = ui.button("Cancel");
+                state.note_control("cancel", cancel.rect);
+                if cancel.clicked() {
                     state.live.send(Command::CancelLoading);
                 }
                 progress_bar(ui, "Loading", progress.part);

@@ -29,13 +29,17 @@ pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     }
     let least_step = span / most.saturating_sub(1).max(1) as f64;
     let power = 10f64.powi(least_step.log10().floor() as i32);
-    let step = [1.0, 2.0, 5.0]
-        .into_iter()
-        .map(|factor| factor * power)
-        .find(|step| *step >= least_step * (1.0 - 1e-9))
-        .unwrap_or(10.0 * power);
-    let first = (low / step - 1e-9).ceil() as i64;
-    let last = (high / step + 1e-9).floor() as i64;
+    let steps = [10.0, 5.0, 2.0, 1.0, 0.5].map(|factor| factor * power);
+    let is_enough = |step: &&f64| **step >= least_step * (1.0 - 1e-9);
+    let widest = steps.iter().take_while(is_enough).count().saturating_sub(1);
+    let ends = |step: f64| {
+        let (first, last) = (low / step - 1e-9, high / step + 1e-9);
+        (first.ceil() as i64, last.floor() as i64)
+    };
+    // One number alone says nothing of an axis.
+    let has_two = |step: &f64| ends(*step).0 < ends(*step).1;
+    let step = steps[widest..].iter().copied().find(has_two).unwrap_or(steps[widest]);
+    let (first, last) = ends(step);
     ((first..=last).map(|index| index as f64 * step).collect(), step)
 }
 
@@ -129,6 +133,7 @@ mod tests {
         assert_eq!(ticks(0.0, 1.0, 6).0, [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
         assert_eq!(ticks(-3.0, 4.0, 5).0, [-2.0, 0.0, 2.0, 4.0]);
         assert_eq!(ticks(2.0, 2.0, 5).0, [2.0]);
+        assert_eq!(ticks(0.1, 6.2, 4).0, [2.0, 4.0, 6.0], "5 alone would say nothing");
         for (low, high) in [(0.0, 0.037), (1.3, 1.9), (-5e-7, 1e-6), (0.0, 8e5)] {
             let (found, _) = ticks(low, high, 6);
             assert!((2..=6).contains(&found.len()), "{low} … {high}: {found:?}");

@@ -20,6 +20,21 @@ fn an_alarm_stands_in_the_status_bar_until_the_run_is_reset() {
 }
 
 #[test]
+fn whoever_points_at_an_alarm_reads_it_whole_and_once() {
+    let mut robot = Robot::open(scene("thin-wall"));
+    robot.take_steps(40);
+    // So narrow that the line is cut.
+    robot.harness.set_size(egui::vec2(800.0, 700.0));
+    robot.frames(3);
+    let count = |robot: &Robot| robot.harness.query_all_by_label_contains("▲").count();
+    assert_eq!(count(&robot), 1);
+    let at = robot.place("alarm", 0.3, 0.5);
+    robot.harness.hover_at(at);
+    robot.frames(90);
+    assert_eq!(count(&robot), 2, "the line and its tooltip");
+}
+
+#[test]
 fn a_state_that_begins_in_alarm_says_so_before_the_first_step() {
     let mut robot = Robot::open(scene("overlap"));
     robot.harness.step();

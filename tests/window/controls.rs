@@ -56,6 +56,28 @@ fn the_run_changes_while_it_runs() {
 }
 
 #[test]
+fn a_press_and_release_without_delay_are_a_click() {
+    let mut robot = Robot::open(pile());
+    let click = |robot: &mut Robot, at: egui::Pos2| {
+        let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+        robot.harness.event(egui::Event::PointerMoved(at));
+        for pressed in [true, false] {
+            robot.harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+        }
+        robot.frames(2);
+        robot.settle();
+    };
+    let release = robot.place("release", 0.5, 0.5);
+    click(&mut robot, release);
+    assert!(robot.state().frame.playing);
+    click(&mut robot, release);
+    assert!(!robot.state().frame.playing);
+    let (left, ground) = (robot.place("Δt", 0.1, 0.5), robot.settings());
+    click(&mut robot, left);
+    assert!(robot.settings().parameters.time_step_secs < ground.parameters.time_step_secs);
+}
+
+#[test]
 fn pause_stops_time() {
     let mut robot = Robot::open(pile());
     robot.key(egui::Key::Space);

@@ -166,3 +166,29 @@ fn the_lessons_go_on_where_they_were_left_and_give_back_what_was_chosen() {
     robot.load(Config::of_scene("cradle"));
     assert!(!robot.state().touring, "another scene ends the lessons");
 }
+
+#[test]
+fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_they_were() {
+    let mut robot = Robot::open(Config::default());
+    robot.state_mut().visit(0);
+    robot.settle();
+    assert!(robot.shows("One pile twice") && !robot.shows("A number was changed"));
+    robot.type_number("Bond", "50");
+    robot.frames(2);
+    assert!(robot.shows("A number was changed") && !robot.shows("One pile twice"));
+
+    robot.harness.get_by_role_and_label(egui::Role::ComboBox, "Lessons").click();
+    robot.frames(3);
+    for (number, Lesson { title, .. }) in LESSONS.iter().enumerate() {
+        assert!(robot.shows(&format!("{}. {title}", number + 1)), "the list has all of them");
+    }
+    robot.click("1. The time step glues");
+    robot.frames(2);
+    assert!(robot.shows("One pile twice") && !robot.shows("A number was changed"));
+    // Of one pile alone a lesson says what to change.
+    robot.state_mut().visit(1);
+    robot.settle();
+    robot.type_number("Δt, time step", "1e-4");
+    robot.frames(2);
+    assert!(robot.shows("This pile is stepped by 5 ms"));
+}

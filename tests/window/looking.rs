@@ -253,6 +253,60 @@ fn a_world_that_would_never_catch_up_lets_commands_in() {
 }
 
 #[test]
+fn what_hardly_moves_rests_and_is_told_in_units_that_one_knows() {
+    let mut config = pile();
+    config.parameters.bond = Some(100.0);
+    let mut robot = Robot::open(config);
+    robot.take_steps(400);
+    let speeds =
+        robot.world().snapshot.grains.iter().map(|grain| grain.velocity.abs().max_element());
+    let rests = |speed: f64| speed > 0.0 && speed < 1e-8;
+    let grain = speeds
+        .clone()
+        .position(rests)
+        .unwrap_or_else(|| panic!("{:?}", speeds.collect::<Vec<_>>()));
+    robot.state_mut().mouse.pinned = Some(GrainRef { world: 0, grain });
+    robot.frames(3);
+    assert!(robot.shows("0.000 m/s, 0.000 m/s"), "grain {grain}");
+}
+
+#[test]
+fn symbols_and_ordinals_are_written_as_one_reads_them() {
+    // More rows than a curve has.
+    let mut config = Config::of_scene("cradle");
+    config.source.duration = Some(1e6);
+    let mut robot = Robot::open(config);
+    robot.send(Command::SetPace(Pace::Max));
+    robot.send(Command::Play);
+    robot.until("a long curve", |state| state.frame.worlds[0].snapshot.observables.step > 33_000);
+    robot.send(Command::Pause);
+    for page in Page::ALL {
+        robot.state_mut().preferences.page = Some(page);
+        robot.frames(5);
+        let root = robot.harness.root();
+        let all = root.children_recursive().map(|node| node.accesskit_node());
+        let texts: Vec<String> = all.filter_map(|node| node.label().or(node.value())).collect();
+        assert!(texts.len() > 20, "{page:?}: {} texts", texts.len());
+        for text in texts {
+            let words = text.split(|c: char| !c.is_alphanumeric());
+            let odd = ["rho", "mu", "2th", "3th"];
+            assert!(!words.into_iter().any(|word| odd.contains(&word)), "{page:?}: {text}");
+        }
+    }
+    robot.state_mut().preferences.page = Some(Page::Compare);
+    robot.frames(5);
+    assert!(robot.shows("plotted: one step in 2"), "the situation");
+}
+
+#[test]
+fn the_paper_is_named() {
+    let mut robot = Robot::open(pile());
+    robot.key(egui::Key::H);
+    robot.frames(3);
+    assert!(robot.shows("The paper is A. Abramian and L. Staron"));
+}
+
+#[test]
 fn two_laws_stand_side_by_side() {
     let mut robot = Robot::open(pile());
     robot.clicks(&["Compare", "Two laws"]);

@@ -8,9 +8,9 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::robot::*;
 
-/// What is typed into fields.
+/// What is typed into fields. The last makes steps so long that a short test may end in one.
 const TEXTS: [&str; 9] =
-    ["0", "1e9", "-3", "nonsense", "", "0.5", "1e-4", "N > 0 and y < 2", "force > 1e-3"];
+    ["0", "-3", "nonsense", "", "0.5", "1e-4", "N > 0 and y < 2", "force > 1e-3", "1e9"];
 const KEYS: [Key; 12] = [
     Key::Space,
     Key::ArrowRight,
@@ -40,7 +40,7 @@ fn is_control(role: Role) -> bool {
 }
 
 /// Does one thing, and gives the name of the control that it was done to.
-fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
+fn act(robot: &mut Robot, random: &mut Pcg64Mcg, texts: &[&str]) -> String {
     if random.random_ratio(1, 6) {
         let key = *KEYS.choose(random).expect("some keys");
         robot.harness.key_press(key);
@@ -76,7 +76,7 @@ fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
     robot.harness.step();
     match role {
         Role::TextInput => {
-            let text = *TEXTS.choose(random).expect("some texts");
+            let text = *texts.choose(random).expect("some texts");
             robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
             robot.harness.event(egui::Event::Text(text.to_owned()));
             robot.harness.step();
@@ -94,7 +94,7 @@ fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
 }
 
 /// Acts for a while, and gives what was done and the largest memory, MiB.
-fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
+fn play(seed: u64, duration: Duration, texts: &[&str]) -> (Vec<String>, usize) {
     let files = folder();
     let mut robot = Robot::open(Config::default());
     robot.state_mut().preferences.folder = files.path().to_owned();
@@ -105,33 +105,17 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
     let (begun, mut acts, mut most) = (Instant::now(), Vec::new(), 0);
     let mut answered = Instant::now();
     while begun.elapsed() < duration {
-        let done = act(&mut robot, &mut random);
+        let done = act(&mut robot, &mut random, texts);
         // What was typed as a folder is none of the test's.
         robot.state_mut().preferences.folder = files.path().to_owned();
         robot.frames(2);
         std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
         most = most.max(resident_mib());
         acts.push(done);
-        let state = robot.state();
-        let waits = state.frame.acknowledged < state.live.sent();
-        if !waits {
+        if robot.state().frame.acknowledged == robot.state().live.sent() {
             answered = Instant::now();
         }
-        if answered.elapsed() > Duration::from_secs(10) && std::env::var_os("MK").is_some() {
-            println!(
-                "{:.0} s: silent since {:.0} s after {:?}; {:?}",
-                begun.elapsed().as_secs_f64(),
-                answered.elapsed().as_secs_f64(),
-                &acts[acts.len().saturating_sub(60)..],
-                state.world().map(|w| w.controls.settings)
-            );
-            println!(
-                "loading {:?}",
-                state.frame.loading.as_ref().map(|l| (l.text.clone(), l.part))
-            );
-            std::thread::sleep(Duration::from_secs(60));
-            std::process::exit(3);
-        }
+        assert!(answered.elapsed() < PATIENCE, "the solver's thread is silent after {acts:?}");
     }
     // The solver's thread still does what it is asked to.
     robot.send(Command::CancelLoading);
@@ -151,7 +135,7 @@ fn resident_mib() -> usize {
 
 #[test]
 fn somebody_without_a_plan_breaks_nothing() {
-    let (acts, _) = play(1, Duration::from_secs(8));
+    let (acts, _) = play(1, Duration::from_secs(8), &TEXTS[..TEXTS.len() - 1]);
     assert!(acts.len() > 40, "{} acts", acts.len());
 }
 
@@ -160,7 +144,7 @@ fn somebody_without_a_plan_breaks_nothing() {
 #[ignore = "takes ten minutes"]
 fn ten_minutes_without_a_plan_need_less_than_600_mib() {
     let seed = std::env::var("SLUMP_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
-    let (acts, most) = play(seed, Duration::from_secs(600));
+    let (acts, most) = play(seed, Duration::from_secs(600), &TEXTS);
     let kinds = acts.iter().collect::<std::collections::BTreeSet<_>>().len();
     println!("seed {seed}: {} acts of {kinds} kinds, {most} MiB at most", acts.len());
     assert!(most < 600, "{most} MiB");

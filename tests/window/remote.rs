@@ -208,17 +208,18 @@ struct Rain {
 
 impl StartSource for Rain {
     fn make(self: Box<Self>, tell: Tell<'_>) -> slump::error::Result<LiveStart> {
-        let mut told = 0;
-        while self.is_endless {
-            told += 1;
+        if !self.is_endless {
+            return Ok(start());
+        }
+        for told in 1.. {
             // No message comes in meanwhile; the window asks for an end by other means.
             IS_POINTLESS.store(told == 100, Ordering::Relaxed);
             if !tell(LoadingProgress::default()) {
                 assert_eq!(told, 100, "given up when it was asked for");
-                return Err(slump::error::Error::value("rain", "given up", "waited for"));
+                break;
             }
         }
-        Ok(start())
+        Err(slump::error::Error::value("rain", "given up", "waited for"))
     }
 
     fn to_bytes(&self) -> slump::error::Result<Vec<u8>> {

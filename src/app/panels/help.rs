@@ -62,6 +62,9 @@ fn contents(ui: &mut Ui) {
                  so that a weakly cohesive pile holds better at a larger Δt. Drag a slider, let go, and \
                  the pile starts again with the new value.",
     );
+    ui.label(
+        "The paper is A. Abramian and L. Staron, Time Steps v.s. Cohesion (2020, hal-02570097).",
+    );
     ui.add_space(8.0);
     for (title, rows) in [("Keys", &KEYS[..]), ("Mouse", &MOUSE[..])] {
         ui.heading(title);

@@ -122,6 +122,7 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
             ui.selectable_value(&mut pile.deposition, way, name).on_hover_text(hint);
         }
         let fresh = ui.button("New pile").on_hover_text("Make it, and let it come to rest.");
+        state.note_control("new pile", fresh.rect);
         if fresh.clicked() {
             let config = pile_like_this(state, &pile);
             state.load(config);
@@ -249,4 +250,32 @@ pub(super) fn ghost(state: &AppState) -> Option<&PastRun> {
     // Of another comparison, a ghost would stand beside numbers that are not its own.
     let is_alike = |run: &&PastRun| state.preferences.ghost && run.worlds.len() == count;
     state.frame.past.last().filter(is_alike)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::preferences::Preferences;
+    use crate::live::{Live, LiveOptions};
+
+    #[test]
+    fn a_ghost_never_stands_beside_worlds_of_another_number() {
+        let live = Live::spawn(LiveOptions::default()).unwrap();
+        let preferences = Preferences { ensemble: false, ..Preferences::default() };
+        let mut state = AppState::new(live, Config::default(), preferences);
+        let settle = |state: &mut AppState| {
+            while state.frame.acknowledged < state.live.sent() || state.frame.loading.is_some() {
+                state.refresh();
+            }
+        };
+        settle(&mut state);
+        let settings = *state.frame.start.as_ref().unwrap().settings();
+        state.step();
+        state.live.send(Command::Reset);
+        settle(&mut state);
+        assert!(ghost(&state).is_some(), "of the run before");
+        state.live.send(Command::Compare(vec![settings, settings.with_bond(50.0)]));
+        settle(&mut state);
+        assert!(!state.frame.past.is_empty() && ghost(&state).is_none());
+    }
 }
