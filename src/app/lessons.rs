@@ -37,6 +37,8 @@ pub struct Lesson {
     pub page: Option<Page>,
     /// True where a slider starts the run again.
     pub starts_again: bool,
+    /// The controls that it asks for next, which are lit, by the names that the window notes their places by.
+    pub asks_for: fn(&AppState) -> &'static [&'static str],
 }
 
 /// A pile of the paper, slow enough to be followed.
@@ -49,7 +51,12 @@ const PILE: Lesson = Lesson {
     plots: &["slump"],
     page: None,
     starts_again: true,
+    asks_for: |state| if waits_at_start(state) { &["release"] } else { &[] },
 };
+
+fn waits_at_start(state: &AppState) -> bool {
+    state.frame.at_start() && !state.frame.playing
+}
 
 /// The seed of the lessons' pile, which slumps in the middle half of sixteen others in all of them; the shipped pile, which
 /// was chosen for the paper's pattern, does not.
@@ -109,8 +116,19 @@ pub const LESSONS: [Lesson; 7] = [
         title: "A bond made is a bond",
         watch: "This pile is stepped by 5 ms. Release it. When it stands, drag Δt to 0.1 ms: nothing happens, for bonds \
                 that hold stay as they are. Tick the box below, and drag again: from the start, Δt matters.",
-        worlds: |base| vec![base.with_bond(20.0).over(5e-3)],
+        worlds: |base| vec![base.with_bond(20.0).over(LONG_STEP_SECS)],
         starts_again: false,
+        asks_for: |state| {
+            let parameters = state.world().map(|world| world.controls.settings.parameters);
+            let is_long = parameters.is_some_and(|it| it.time_step_secs == LONG_STEP_SECS);
+            match (state.frame.playing, is_long) {
+                (true, _) => &[],
+                _ if waits_at_start(state) => &["release"],
+                (_, true) => &["Δt"],
+                _ if !state.preferences.starts_again => &["start again"],
+                _ => &[],
+            }
+        },
         ..PILE
     },
     Lesson {
@@ -164,9 +182,16 @@ pub const LESSONS: [Lesson; 7] = [
         watch: "On the right: another scene, or a new pile of your number of grains and seed. Drag the sliders below, drag \
                 grains with the mouse, and ask whether you can trust what you see.",
         page: Some(Page::Pile),
+        asks_for: |state| match (waits_at_start(state), state.preferences.page) {
+            (true, Some(Page::Pile)) => &["scenes", "new pile", "Bond", "Δt", "ρ", "μ", "trust"],
+            _ => &[],
+        },
         ..PILE
     },
 ];
+
+/// The time step of the lesson on bonds, s.
+const LONG_STEP_SECS: f64 = 5e-3;
 
 /// How far someone has come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -295,6 +320,21 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if state.touring {
         let is_changed = has_other_worlds(state, &LESSONS[at]);
         ui.label(if is_changed { OTHER_WORLDS } else { LESSONS[at].watch });
+    }
+}
+
+/// Lights the controls that the lesson asks for next, where all of the window is drawn.
+pub(crate) fn light(ui: &Ui, state: &AppState) {
+    if !state.touring || state.frame.loading.is_some() {
+        return;
+    }
+    let lesson = &LESSONS[state.preferences.lesson.at.min(LESSONS.len() - 1)];
+    let stroke = egui::Stroke::new(2.0, theme::accent(ui.visuals().dark_mode));
+    for name in (lesson.asks_for)(state) {
+        if let Some(rect) = state.controls.get(*name) {
+            let ring = rect.expand(3.0);
+            ui.painter().rect_stroke(ring, 5.0, stroke, egui::StrokeKind::Outside);
+        }
     }
 }
 

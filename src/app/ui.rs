@@ -49,6 +49,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     });
     if state.preferences.folded {
         unfold(ui, state);
+    } else {
+        lessons::light(ui, state);
     }
     grain::show_over_scene(ui, state);
     trust::show(ui, state);

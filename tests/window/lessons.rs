@@ -192,3 +192,40 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     robot.frames(2);
     assert!(robot.shows("This pile is stepped by 5 ms"));
 }
+
+/// What the lesson asks for next.
+fn asked(robot: &Robot) -> &'static [&'static str] {
+    (LESSONS[robot.state().preferences.lesson.at].asks_for)(robot.state())
+}
+
+#[test]
+fn all_that_a_lesson_asks_for_is_in_view() {
+    for (at, lesson) in LESSONS.iter().enumerate() {
+        let mut robot = Robot::open(Config::default());
+        robot.harness.set_size(egui::vec2(1024.0, 700.0));
+        robot.state_mut().visit(at);
+        robot.settle();
+        robot.frames(20);
+        let names = asked(&robot);
+        assert!(!names.is_empty(), "{}", lesson.title);
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1024.0, 700.0));
+        for name in names {
+            let rect = robot.state().controls[*name];
+            assert!(window.contains_rect(rect), "{}: {name} at {rect:?}", lesson.title);
+        }
+    }
+}
+
+#[test]
+fn the_lesson_on_bonds_asks_for_one_thing_after_the_other() {
+    let mut robot = Robot::open(Config::default());
+    robot.state_mut().visit(lesson("A bond made is a bond").0);
+    robot.settle();
+    assert_eq!(asked(&robot), ["release"]);
+    robot.take_steps(3);
+    assert_eq!(asked(&robot), ["Δt"]);
+    robot.type_number("Δt, time step", "1e-4");
+    assert_eq!(asked(&robot), ["start again"]);
+    robot.click("start again when I move a slider");
+    assert!(asked(&robot).is_empty());
+}

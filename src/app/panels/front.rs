@@ -35,8 +35,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         ui.horizontal(|ui| {
             let hint = "On: when a slider is let go, the pile starts again with its new value, and the run before stays as a \
                         ghost. Off: the new value acts from the next step on.";
-            ui.checkbox(&mut state.preferences.starts_again, "start again when I move a slider")
-                .on_hover_text(hint);
+            let name = "start again when I move a slider";
+            let switch = ui.checkbox(&mut state.preferences.starts_again, name);
+            state.note_control("start again", switch.on_hover_text(hint).rect);
             what_to_try(ui, state);
         });
     });
