@@ -2,6 +2,7 @@
 //! What their sentences say is checked by `tests/window/lessons.rs`, over many starts.
 
 use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui};
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::IN_BROWSER;
@@ -27,6 +28,8 @@ pub struct Lesson {
     pub watch: &'static str,
     /// Its scene.
     pub scene: &'static str,
+    /// What is seen of it, lower left and upper right, in mean diameters; none is all of it.
+    pub view: Option<[DVec2; 2]>,
     /// Its worlds, made of the settings that the window gives that scene.
     pub worlds: fn(Settings) -> Vec<Settings>,
     /// Simulated time per time on the wall.
@@ -46,6 +49,7 @@ const PILE: Lesson = Lesson {
     title: "",
     watch: "",
     scene: "pile",
+    view: None,
     worlds: |base| vec![base],
     speed: 0.2,
     plots: &["slump"],
@@ -169,6 +173,8 @@ pub const LESSONS: [Lesson; 7] = [
         watch: "A disc a thousand times as heavy on a light one. Ten sweeps a step cannot carry it, and the light disc is \
                 squeezed; on the right each step is solved. Watch the overlap.",
         scene: "mass-ratio",
+        // The light disc, of which one would see nothing beside the heavy one.
+        view: Some([DVec2::new(-1.3, -0.3), DVec2::new(1.3, 1.4)]),
         worlds: |base| {
             let solver = SolverSettings::to_residual(Method::Newton, 1e-6, 100);
             let base = Settings { solver, ..base };

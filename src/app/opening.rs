@@ -68,7 +68,9 @@ impl StartSource for Opening {
                 let (config, mut scene) = lesson.scene()?;
                 budget::complete(&mut scene, &config.solver);
                 let worlds = (lesson.worlds)(scene.settings());
-                Ok(LiveStart { worlds, ..start(&scene, config)? })
+                let start = start(&scene, config)?;
+                let zoomed = lesson.view.map(|view| view.map(|end| scene.mean_diameter * end));
+                Ok(LiveStart { worlds, view: zoomed.unwrap_or(start.view), ..start })
             }
             Self::Link(text) => {
                 let link = RunLink::read(&text)?;

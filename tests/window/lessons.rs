@@ -132,6 +132,21 @@ fn ten_sweeps_do_not_carry_a_heavy_disc() {
 }
 
 #[test]
+fn the_squeezed_disc_is_large_enough_to_be_seen_and_its_overlap_is_plotted() {
+    let mut robot = Robot::open(Config::default());
+    robot.state_mut().visit(lesson("Where a method breaks").0);
+    robot.settle();
+    robot.take_steps(10);
+    assert!(robot.shows("largest overlap δ/d (%)"));
+    let start = robot.state().frame.start.clone().expect("a start");
+    let disc = &robot.world().snapshot.grains[0];
+    let part = 2.0 * disc.radius / (start.view[1] - start.view[0]).y;
+    assert!((0.4..0.8).contains(&part), "it takes {part} of the height");
+    let at = (disc.position - start.view[0]) / (start.view[1] - start.view[0]);
+    assert!((at - DVec2::splat(0.5)).abs().max_element() < 0.1, "in the middle: {at}");
+}
+
+#[test]
 fn the_window_shows_what_was_computed_without_it() {
     let (at, lesson) = lesson("The time step glues");
     let mut robot = Robot::open(Config::default());

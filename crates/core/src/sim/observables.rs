@@ -301,8 +301,9 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
     Quantity { name: "slump", title: "slump Δy", value: |row| row.slump, ..Quantity::PLAIN },
     Quantity {
         name: "overlap",
-        title: "mean overlap δ/d (%)",
-        value: |row| 100.0 * row.mean_overlap,
+        title: "largest overlap δ/d (%)",
+        value: |row| 100.0 * row.max_overlap,
+        beside: &[("mean of pairs", |row| Some(100.0 * row.mean_overlap))],
         ..Quantity::PLAIN
     },
     Quantity {
@@ -331,7 +332,7 @@ mod tests {
 
     /// Columns that the window does not plot.
     const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled residual \
-        model_residual fell_back contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
+        model_residual fell_back contacts compressive_contacts tensile_contacts potential_energy normal_work \
         tangential_work wall_work drive_work border_work gravity_work bond_work drive_energy lost_grains";
 
     #[test]
