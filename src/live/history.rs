@@ -264,9 +264,8 @@ impl RunHistory {
 
     /// Puts worlds at a start, one for each of these settings. The present ones are kept.
     pub(super) fn restart(&mut self, start: &LiveStart, all: &[Settings]) {
-        let budget_bytes = self.recording_bytes / all.len().max(1);
         let world = |settings: &Settings| {
-            WorldHistory::new(&start.simulation, start.tally, settings, budget_bytes)
+            WorldHistory::new(&start.simulation, start.tally, settings, self.recording_bytes)
         };
         let worlds = all.iter().map(world).collect();
         let mut run = LiveRun { worlds, ..LiveRun::default() };

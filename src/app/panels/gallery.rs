@@ -27,6 +27,8 @@ const HEIGHT: f32 = 470.0;
 pub(crate) struct Gallery {
     style: Option<Style>,
     pictures: Vec<Option<TextureHandle>>,
+    /// The pass that the last was drawn in.
+    drawn_in: u64,
 }
 
 /// The list of scenes, closed until it is asked for. A click opens a scene.
@@ -67,7 +69,7 @@ fn follow_style(ui: &Ui, state: &mut AppState) {
     };
     let gallery = &mut state.shown.gallery;
     if gallery.style.as_ref() != Some(&style) {
-        *gallery = Gallery { style: Some(style), pictures: vec![None; SCENES.len()] };
+        *gallery = Gallery { style: Some(style), pictures: vec![None; SCENES.len()], drawn_in: 0 };
     }
 }
 
@@ -102,16 +104,13 @@ fn entry(
 
 /// Paints a scene's picture. Of those that are not there yet, one a frame is drawn.
 fn paint(ui: &Ui, gallery: &mut Gallery, index: usize, info: &SceneInfo, cell: Rect) {
-    let Gallery { style: Some(style), pictures } = gallery else { return };
+    let Gallery { style: Some(style), pictures, drawn_in } = gallery else { return };
     if pictures[index].is_none() {
-        let id = egui::Id::unique("picture of this frame");
-        let frame = ui.ctx().cumulative_pass_nr();
-        let drawn_in = ui.data(|data| data.get_temp::<u64>(id));
         ui.ctx().request_repaint();
-        if drawn_in == Some(frame) {
+        let pass = ui.ctx().cumulative_pass_nr();
+        if std::mem::replace(drawn_in, pass) == pass {
             return;
         }
-        ui.data_mut(|data| data.insert_temp(id, frame));
         let size = (PICTURE * ui.pixels_per_point()).round();
         // A scene that cannot be drawn keeps its name.
         let image = picture(info, style, [size.x as u32, size.y as u32])

@@ -92,7 +92,6 @@ pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
     });
     let pinned = pinned.map(|pinned| pinned.grain);
     let clicked = if table.contacts {
-        let of = |contact: &ContactView| contact.grain as usize;
         let is_pinned = |_, contact: &ContactView| {
             let has = |grain: usize| {
                 [Some(contact.grain), contact.other_grain].contains(&Some(grain as u32))
@@ -100,7 +99,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
             pinned.is_some_and(has)
         };
         let clicked = rows(ui, table, &snapshot, &snapshot.contacts, &CONTACTS, is_pinned);
-        clicked.map(|index| of(&snapshot.contacts[index]))
+        clicked.map(|index| snapshot.contacts[index].grain as usize)
     } else {
         let is_pinned = |index, _: &GrainView| pinned == Some(index);
         rows(ui, table, &snapshot, &snapshot.grains, &GRAINS, is_pinned)
