@@ -97,6 +97,14 @@ wait_for "one grain less" "s['grains'] == $grains"
 xdotool key r
 wait_for "the reset" "s['step'] == 0"
 
+# A press and a release without delay are a click.
+xdotool mousemove $(at release 0.5) mousedown 1 mouseup 1
+wait_for "the release by a quick click" "s['playing']"
+xdotool mousedown 1 mouseup 1
+wait_for "the pause by a quick click" "not s['playing']"
+xdotool key r
+wait_for "the second reset" "s['step'] == 0"
+
 # Another size, and small ones.
 for size in "1000 700" "640 480" "1280 800"; do
     xdotool search --name Slump windowsize $size

@@ -40,6 +40,8 @@ pub struct Lesson {
     pub page: Option<Page>,
     /// True where a slider starts the run again.
     pub starts_again: bool,
+    /// True of settings whose change its sentences ask for, or leave true.
+    pub leaves_free: fn(&str) -> bool,
     /// The controls that it asks for next, which are lit, by the names that the window notes their places by.
     pub asks_for: fn(&AppState) -> &'static [&'static str],
 }
@@ -55,6 +57,7 @@ const PILE: Lesson = Lesson {
     plots: &["slump"],
     page: None,
     starts_again: true,
+    leaves_free: |_| false,
     asks_for: |state| if waits_at_start(state) { &["release"] } else { &[] },
 };
 
@@ -122,6 +125,7 @@ pub const LESSONS: [Lesson; 7] = [
                 that hold stay as they are. Tick the box below, and drag again: from the start, Δt matters.",
         worlds: |base| vec![base.with_bond(20.0).over(LONG_STEP_SECS)],
         starts_again: false,
+        leaves_free: |name| name == "dt",
         asks_for: |state| {
             let parameters = state.world().map(|world| world.controls.settings.parameters);
             let is_long = parameters.is_some_and(|it| it.time_step_secs == LONG_STEP_SECS);
@@ -188,6 +192,7 @@ pub const LESSONS: [Lesson; 7] = [
         watch: "On the right: another scene, or a new pile of your number of grains and seed. Drag the sliders below, drag \
                 grains with the mouse, and ask whether you can trust what you see.",
         page: Some(Page::Pile),
+        leaves_free: |_| true,
         asks_for: |state| match (waits_at_start(state), state.preferences.page) {
             (true, Some(Page::Pile)) => &["scenes", "new pile", "Bond", "Δt", "ρ", "μ", "trust"],
             _ => &[],
@@ -347,14 +352,19 @@ pub(crate) fn light(ui: &Ui, state: &AppState) {
 /// What is said in place of a lesson's sentences where they are no longer true.
 const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has it as it was.";
 
-/// True where worlds that a lesson compares are no longer those that it speaks of. Of one world alone, lessons say what to
-/// change.
+/// True where worlds of a lesson are no longer those that it speaks of.
 fn has_other_worlds(state: &AppState, lesson: &Lesson) -> bool {
     let Some(start) = &state.frame.start else { return false };
     let worlds = (lesson.worlds)(*start.settings());
     let is_there = state.frame.loads > state.shown.loads_before_lesson;
-    let shown = state.frame.worlds.iter().map(|world| &world.controls.settings);
-    is_there && worlds.len() > 1 && !shown.eq(&worlds)
+    let shown: Vec<Settings> =
+        state.frame.worlds.iter().map(|world| world.controls.settings).collect();
+    let held = || Settings::about().filter(|about| !(lesson.leaves_free)(about.name));
+    let is_as_it_was = |(one, shown): (&Settings, &Settings)| {
+        held().all(|about| one.get(about.name) == shown.get(about.name))
+    };
+    let are_all = shown.len() == worlds.len() && worlds.iter().zip(&shown).all(is_as_it_was);
+    is_there && !are_all && held().next().is_some()
 }
 
 /// All lessons, to be gone to; the one that was left is marked.

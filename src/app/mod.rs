@@ -4,6 +4,7 @@
 //! `window` runs it on a screen. The simulation itself runs on the thread of
 //! [`crate::live`].
 
+mod axes;
 #[cfg(target_arch = "wasm32")]
 pub mod browser;
 mod budget;

@@ -3,26 +3,20 @@
 use std::sync::Arc;
 
 use egui::{Color32, ComboBox, Label, RichText, Ui};
-use egui_plot::{
-    AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoints,
-    PlotUi, Points, VLine,
-};
+use egui_plot::{HoverPosition, Line, LineStyle, MarkerShape, PlotPoints, Points, VLine};
 use serde::{Deserialize, Serialize};
 
+use super::axes::{plot_with_axes, with_least, with_room};
 use super::ensemble::Band;
 use crate::data::Observed;
 use crate::live::Curve;
-use crate::render::numbers::{decimal, si_prefix, ticks};
+use crate::render::numbers::si_prefix;
 use crate::sim::{Beside, Observables, Quantity};
 
 /// Least width of a plot, points: below it fewer are shown in a row.
 const LEAST_WIDTH: f32 = 150.0;
 /// What an axis of slump shows at least: runs are compared by eye.
 const LEAST_SLUMP: f64 = 0.4;
-/// Least height of a vertical axis, as a part of its largest value.
-const LEAST_SPAN: f64 = 1e-3;
-/// The same of one that is logarithmic: two powers of ten are within it wherever it lies.
-const LEAST_DECADES: f64 = 2.0;
 /// The quantity that other piles are told of.
 const OTHERS: &str = "slump";
 /// How strong the colour of single other piles is.
@@ -33,38 +27,6 @@ const BUCKETS: usize = 300;
 /// How what is shown beside a quantity is drawn.
 const BESIDE: [LineStyle; 2] =
     [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
-
-/// A plot with the look of all of them. The wheel does not zoom it.
-pub(super) fn bare_plot<'a>(
-    ui: &Ui,
-    id: impl std::hash::Hash + std::fmt::Debug,
-    height: f32,
-) -> Plot<'a> {
-    Plot::new(id)
-        .height(height)
-        .allow_scroll(false)
-        // egui would fill it pixel by pixel (see `fill`).
-        .show_background(false)
-        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
-}
-
-/// A plot with an axis along x in that unit; `log` says which axes are logarithmic.
-pub(super) fn plot_with_axes<'a>(
-    ui: &Ui,
-    id: impl std::hash::Hash + std::fmt::Debug,
-    height: f32,
-    log: [bool; 2],
-    x_unit: &'static str,
-) -> Plot<'a> {
-    let y_hints = AxisHints::new_y().min_thickness(34.0);
-    bare_plot(ui, id, height)
-        // Half of the last label lies right of the plot.
-        .width(ui.available_width() - 10.0)
-        .x_grid_spacer(move |grid| round_marks(grid, log[0]))
-        .y_grid_spacer(move |grid| round_marks(grid, log[1]))
-        .custom_x_axes(vec![axis(AxisHints::new_x(), log[0], x_unit)])
-        .custom_y_axes(vec![axis(y_hints, log[1], "")])
-}
 
 /// Everything that plots are drawn from.
 #[derive(Clone, Debug)]
@@ -125,36 +87,31 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     ui.add(Label::new(RichText::new(title).small()).truncate());
     let log = quantity.logarithmic;
     let group = egui::Id::unique("time");
-    let [least, most] = least_span(data, quantity, factor);
     let height = (ui.available_height() - 2.0).max(40.0);
     let until_secs = end_secs(data);
-    let response = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " s")
+    let plot = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " s");
+    let response = with_least(plot, [[0.0, data.until_secs], least_span(data, quantity, factor)])
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
         .allow_zoom([true, false])
-        .include_x(0.0)
-        .include_x(data.until_secs)
-        .include_y(least)
-        .include_y(most)
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
-                let shown = |row: &Observables| match row.time_secs <= until_secs {
-                    true => scaled((quantity.value)(row)) / factor,
-                    false => f64::NAN,
-                };
-                let values = points(ghost, shown);
+                let values =
+                    points(ghost, until_secs, |row| scaled((quantity.value)(row)) / factor);
                 let grey = Color32::from_gray(128).gamma_multiply(0.6);
                 plot.line(Line::new("the run before", values).color(grey).width(1.2));
             }
             if quantity.name == OTHERS {
-                data.worlds.iter().for_each(|world| others(plot, world, data.now_secs));
+                let lines = data.worlds.iter().flat_map(|world| others(world, data.now_secs));
+                lines.for_each(|line| plot.line(line));
             }
             for WorldCurve { name, colour, curve, .. } in &data.worlds {
                 let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
-                    Line::new(name, points(curve, |row| value(row) / factor)).color(*colour)
+                    let points = points(curve, f64::INFINITY, |row| value(row) / factor);
+                    Line::new(name, points).color(*colour)
                 };
                 let value = |row: &Observables| scaled((quantity.value)(row));
                 plot.line(line(name.clone(), &value).width(1.6));
@@ -179,38 +136,31 @@ fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
     points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
 }
 
-/// A world's other piles as thin lines and their mean as a dashed one, up to the moment that is shown.
-fn others(plot: &mut PlotUi<'_>, world: &WorldCurve, now_secs: f64) {
-    let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else { return };
-    for run in &band.runs {
+/// A world's other piles as a thin line each and their mean as a dashed one, up to the moment that is shown.
+fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
+    let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
+        return Vec::new();
+    };
+    let run = |run: &Vec<[f64; 2]>| {
         let line = Line::new(format!("{}: another pile", world.name), until_now(run, now_secs));
-        plot.line(line.color(world.colour.gamma_multiply(OTHERS_STRENGTH)).width(0.8));
-    }
+        line.color(world.colour.gamma_multiply(OTHERS_STRENGTH)).width(0.8)
+    };
     let mean: Vec<_> =
         band.times_secs.iter().zip(&band.means).map(|(&at, &mean)| [at, mean]).collect();
     let name = format!("{}: mean of {} other piles", world.name, band.count);
     let style = LineStyle::Dashed { length: 5.0 };
-    plot.line(
-        Line::new(name, until_now(&mean, now_secs)).color(world.colour).style(style).width(1.2),
-    );
+    let mean = Line::new(name, until_now(&mean, now_secs)).color(world.colour);
+    band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
-/// What a vertical axis shows at least: around values that hardly differ, more than the digits of their rounding.
+/// What a vertical axis shows at least.
 fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
     let value = |row: &Observables| (quantity.value)(row);
     let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
     let rows = data.worlds.iter().flat_map(|world| world.curve.rows());
-    let values = rows.map(|row| scaled(value(row))).filter(|value| value.is_finite());
-    let ends = values.map(|value| [value, value]);
-    let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);
-    let [mut low, mut high] = ends.unwrap_or_default();
-    if quantity.name == OTHERS {
-        (low, high) = (low.min(0.0), high.max(LEAST_SLUMP));
-    }
-    let most = low.abs().max(high.abs());
-    let least = if quantity.logarithmic { LEAST_DECADES } else { LEAST_SPAN * most };
-    let room = (0.5 * (least - (high - low))).max(0.0);
-    [low - room, high + room]
+    let values = rows.map(|row| scaled(value(row)));
+    let always = if quantity.name == OTHERS { &[0.0, LEAST_SLUMP][..] } else { &[] };
+    with_room(values.chain(always.iter().copied()), quantity.logarithmic)
 }
 
 /// What a curve has to show beside a quantity.
@@ -247,34 +197,6 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     (title, factor)
 }
 
-/// Two to five marks at round numbers, or at whole powers of ten.
-fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
-    let (low, high) = grid.bounds;
-    if log {
-        let marks = |step: i64| {
-            let ends = [low, high].map(|end| end / step as f64);
-            ends[0].ceil() as i64..=ends[1].floor() as i64
-        };
-        let widest = (((high - low) / 3.0).ceil() as i64).max(1);
-        let step = (1..=widest).rev().find(|&step| marks(step).count() > 1).unwrap_or(1);
-        let step_size = step as f64;
-        let mark = |count: i64| GridMark { value: count as f64 * step_size, step_size };
-        return marks(step).map(mark).collect();
-    }
-    let (values, step_size) = ticks(low, high, 4);
-    values.into_iter().map(|value| GridMark { value, step_size }).collect()
-}
-
-/// Labels of the marks: numbers, or the powers of ten that numbers stand for.
-fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
-    hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
-        if log {
-            return format!("1e{}", mark.value);
-        }
-        format!("{}{unit}", decimal(mark.value, mark.step_size))
-    })
-}
-
 fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
     let HoverPosition::NearDataPoint { plot_name: name, position: at, .. } = position else {
         return None;
@@ -288,9 +210,14 @@ fn scaled(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
 
-/// The curve, or, of a long one, the least and the largest value of every interval.
-fn points(curve: &Curve, value: impl Fn(&Observables) -> f64) -> PlotPoints<'static> {
-    let points = curve.rows().map(|row| [row.time_secs, value(row)]);
+/// The curve up to a time, or, of a long one, the least and the largest value of every interval.
+fn points(
+    curve: &Curve,
+    until_secs: f64,
+    value: impl Fn(&Observables) -> f64,
+) -> PlotPoints<'static> {
+    let rows = curve.rows().take_while(|row| row.time_secs <= until_secs);
+    let points = rows.map(|row| [row.time_secs, value(row)]);
     // A state that no step has led to has no residual, and its logarithm is no number.
     let is_finite = |point: &[f64; 2]| point.iter().all(|number| number.is_finite());
     let points: Vec<[f64; 2]> = points.filter(is_finite).collect();
@@ -388,10 +315,18 @@ impl ChosenPlot {
         ui.add(Label::new(title).truncate());
         let id = ("chosen", &self.axes, self.logarithmic);
         let height = (ui.available_height() - 2.0).max(40.0);
-        plot_with_axes(ui, id, height, self.logarithmic, "").show(ui, |plot| {
-            for WorldCurve { name, colour, curve, .. } in worlds {
-                let stride = curve.len().div_ceil(MOST_POINTS).max(1);
-                let points = self.points(curve.rows().step_by(stride));
+        let stride = |curve: &Curve| curve.len().div_ceil(MOST_POINTS).max(1);
+        let of_worlds: Vec<_> = worlds
+            .iter()
+            .map(|world| self.points(world.curve.rows().step_by(stride(&world.curve))))
+            .collect();
+        let ends = [0, 1].map(|axis| {
+            let values = of_worlds.iter().flatten().map(|place| place[axis]);
+            with_room(values, self.logarithmic[axis])
+        });
+        let plot = plot_with_axes(ui, id, height, self.logarithmic, "");
+        with_least(plot, ends).show(ui, |plot| {
+            for (WorldCurve { name, colour, curve, .. }, points) in worlds.iter().zip(of_worlds) {
                 plot.line(Line::new(name.clone(), points).color(*colour).width(1.4));
                 let until_now = |row: &&Observables| row.time_secs <= now_secs;
                 let now = curve.rows().take_while(until_now).last();
@@ -405,7 +340,10 @@ impl ChosenPlot {
 
 #[cfg(test)]
 mod tests {
+    use egui_plot::{PlotGeometry, PlotItem};
+
     use super::*;
+    use crate::sim::QUANTITIES;
 
     #[test]
     fn a_curve_goes_through_the_rows_and_leaves_out_what_has_no_logarithm() {
@@ -435,45 +373,126 @@ mod tests {
         curve
     }
 
-    #[test]
-    fn a_ghost_of_a_long_run_does_not_stretch_the_axis_of_a_short_one() {
-        let world = WorldCurve {
-            name: String::new(),
-            colour: Color32::RED,
-            curve: curve_until(1.5),
-            others: None,
-        };
-        let data = PlotData {
+    fn world(curve: Curve) -> WorldCurve {
+        WorldCurve { name: String::new(), colour: Color32::RED, curve, others: None }
+    }
+
+    fn plots_of(world: WorldCurve, ghosts: Vec<Curve>) -> PlotData {
+        PlotData {
             worlds: vec![world],
-            ghosts: vec![curve_until(9.0)],
+            ghosts,
             quantities: Vec::new(),
             chosen: ChosenPlot::default(),
             now_secs: 0.0,
             until_secs: 1.0,
-        };
+        }
+    }
+
+    #[test]
+    fn a_ghost_of_a_long_run_does_not_stretch_the_axis_of_a_short_one() {
+        let data = plots_of(world(curve_until(1.5)), vec![curve_until(9.0)]);
         assert_eq!(end_secs(&data), 1.5, "its own end alone counts");
-        assert_eq!(end_secs(&PlotData { worlds: Vec::new(), ..data }), 1.0);
+        assert_eq!(end_secs(&PlotData { worlds: Vec::new(), ..data.clone() }), 1.0);
+        let shown = |until_secs| points(&data.ghosts[0], until_secs, |_| 1.0).points().len();
+        assert_eq!([shown(1.5), shown(4.5), shown(9.0)], [1, 2, 3], "and nothing beyond is drawn");
     }
 
     #[test]
-    fn the_end_of_other_piles_is_not_told_before_the_release() {
-        let points = [[0.0, 0.0], [0.1, 0.2], [0.2, 0.4]];
-        let shown = |now_secs| until_now(&points, now_secs).points().len();
-        assert_eq!([shown(0.0), shown(0.15), shown(1.0)], [1, 2, 3]);
+    fn other_piles_are_a_line_each_and_their_mean_and_none_tells_its_end_before() {
+        let times_secs = vec![0.0, 0.1, 0.2];
+        let run = |slope: f64| times_secs.iter().map(|at| [*at, slope * at]).collect();
+        let band = Band {
+            runs: [1.0, 2.0, 6.0].map(run).into(),
+            means: times_secs.iter().map(|at| 3.0 * at).collect(),
+            count: 3,
+            times_secs: times_secs.clone(),
+            ..Band::default()
+        };
+        let world = WorldCurve { others: Some(Arc::new(band)), ..world(curve_until(0.2)) };
+        for (now_secs, points) in [(0.0, 1), (0.15, 2), (1.0, 3)] {
+            let ends: Vec<f64> = others(&world, now_secs)
+                .iter()
+                .map(|line| {
+                    let PlotGeometry::Points(all) = line.geometry() else { panic!("no points") };
+                    assert_eq!(all.len(), points, "at {now_secs} s");
+                    all[points - 1].y
+                })
+                .collect();
+            let last = times_secs[points - 1];
+            assert_eq!(ends, [1.0, 2.0, 6.0, 3.0].map(|slope| slope * last));
+        }
+        assert!(
+            others(&plots_of(WorldCurve { others: None, ..world }, Vec::new()).worlds[0], 1.0)
+                .is_empty()
+        );
+    }
+
+    /// Numbers along x and along y of a plot that is painted alone.
+    fn painted_numbers(data: &PlotData) -> [usize; 2] {
+        let context = egui::Context::default();
+        let mut painted = Vec::new();
+        // Plots find their size in their first frames.
+        for _ in 0..4 {
+            let input = egui::RawInput {
+                screen_rect: Some(egui::Rect::from_min_size(
+                    egui::Pos2::ZERO,
+                    egui::vec2(500.0, 260.0),
+                )),
+                ..egui::RawInput::default()
+            };
+            let output = context.run_ui(input, |ui| {
+                draw(ui, data);
+            });
+            painted = output.shapes;
+        }
+        let mut counts = [0, 0];
+        for clipped in painted {
+            let egui::Shape::Text(text) = clipped.shape else { continue };
+            let number = text.galley.text().trim_end_matches(" s").replace('−', "-");
+            if number.parse::<f64>().is_ok() {
+                counts[usize::from(text.visual_bounding_rect().center().y < 240.0)] += 1;
+            }
+        }
+        counts
     }
 
     #[test]
-    fn an_axis_never_has_one_number_alone() {
-        let grid = |low, high| GridInput { bounds: (low, high), base_step_size: 1.0 };
-        for place in 0..400 {
-            let low = -7.3 + 0.037 * f64::from(place);
-            for span in [1e-6, 1e-3, 0.4, 1.0, 2.0, 3.2, 5.7, 6.1, 9.0, 1e3] {
-                let count = round_marks(grid(low, low + span), false).len();
-                assert!((2..=5).contains(&count), "{low} and {span} more: {count}");
-                if span >= LEAST_DECADES {
-                    let count = round_marks(grid(low, low + span), true).len();
-                    assert!((2..=5).contains(&count), "1e{low} and {span} decades more: {count}");
-                }
+    fn both_axes_of_every_plot_have_numbers() {
+        for values in [
+            [1.0, 1.0, 1.0],
+            [1.0, 1.01, 3.0],
+            [2e-7, 6e-7, 3e-7],
+            [0.0, 5e3, 7e9],
+            [0.0, 1.0, 1e200],
+        ] {
+            let mut curve = Curve::default();
+            for (step, value) in values.into_iter().enumerate() {
+                curve.push(Observables {
+                    step: step as u64,
+                    time_secs: 0.1 * step as f64,
+                    slump: value,
+                    kinetic_energy: value,
+                    residual: value,
+                    ..Observables::default()
+                });
+            }
+            let data = plots_of(world(curve), Vec::new());
+            for quantity in QUANTITIES {
+                let data = PlotData { quantities: vec![quantity], ..data.clone() };
+                let counts = painted_numbers(&data);
+                assert!(
+                    counts.iter().all(|&count| count >= 2),
+                    "{}: {counts:?} of {values:?}",
+                    quantity.name
+                );
+            }
+            for logarithmic in [[false, false], [false, true], [true, true]] {
+                let chosen = ChosenPlot { on: true, logarithmic, ..ChosenPlot::default() };
+                let counts = painted_numbers(&PlotData { chosen, ..data.clone() });
+                assert!(
+                    counts.iter().all(|&count| count >= 2),
+                    "log {logarithmic:?}: {counts:?} of {values:?}"
+                );
             }
         }
     }

@@ -7,6 +7,7 @@ use egui::{
 };
 
 use super::theme;
+use crate::error::Error;
 use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
@@ -50,7 +51,7 @@ pub(super) fn show_as(
         _ => {
             let present = *settings;
             let default = start.get(about.name).and_then(as_number)?;
-            let refuse = |value| refusal(about, &present, value);
+            let refuse = |value| refusal(about, control, &present, value);
             let (edited, rect) = number(ui, control, default, refuse, as_number(before)?);
             let value = edited.and_then(|value| of_number(about.kind, value));
             (value.unwrap_or(before), rect)
@@ -77,15 +78,29 @@ fn of_number(kind: Kind, number: f64) -> Option<Value> {
     }
 }
 
+/// What a setting is called where there is no room for its label.
+pub(super) fn called(about: &About) -> &'static str {
+    let symbol = about.control.map_or("", |control| control.symbol);
+    if symbol.is_empty() { about.name } else { symbol }
+}
+
 /// Why a typed number is not accepted.
-fn refusal(about: &About, settings: &Settings, number: f64) -> Option<String> {
+fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -> Option<String> {
+    let refused =
+        |allowed| Some(format!("{} is {}, but must be {allowed}", called(about), written(number)));
     let whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
     if about.kind == Kind::Count && !whole {
-        return Some(format!("{} is {number}, but must be a whole number ≥ 0", about.name));
+        return refused("a whole number ≥ 0".to_owned());
+    }
+    if number > control.most {
+        return refused(format!("at most {}", written(control.most)));
     }
     let mut tried = *settings;
     tried.set(about.name, of_number(about.kind, number)?);
-    tried.validate().err().map(|error| error.to_string())
+    match tried.validate().err()? {
+        Error::Value { field, allowed, .. } if field == about.name => refused(allowed),
+        of_others => Some(of_others.to_string()),
+    }
 }
 
 /// Digits of a value that comes from a slider: the mouse knows no more.

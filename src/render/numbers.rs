@@ -43,16 +43,17 @@ pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     ((first..=last).map(|index| index as f64 * step).collect(), step)
 }
 
-/// Decimals of numbers that are not written as powers of ten.
+/// Decimals, and zeros before the point, of numbers that are not written as powers of ten.
 const MOST_DECIMALS: f64 = 6.0;
 
 /// A number with as many decimals as tell multiples of `step` apart, as a power of ten where those are many, and
 /// a true minus sign.
 pub(crate) fn decimal(value: f64, step: f64) -> String {
     let places = -(step.abs().log10() + 1e-9).floor();
-    let text = if places > MOST_DECIMALS && value == 0.0 {
+    let is_far = places.abs() > MOST_DECIMALS;
+    let text = if is_far && value == 0.0 {
         "0".to_owned()
-    } else if places > MOST_DECIMALS {
+    } else if is_far {
         // As many digits as lie between the number and the step.
         let digits = (value.abs().log10().floor() + places).clamp(0.0, 15.0) as usize;
         format!("{value:.digits$e}").replace("e-", "e−")
@@ -152,6 +153,8 @@ mod tests {
         assert_eq!(decimal(2e-10, 1e-10), "2e−10");
         assert_eq!(decimal(-2.5e-8, 5e-9), "−2.5e−8");
         assert_eq!(decimal(0.0, 1e-10), "0");
+        assert_eq!(decimal(6e9, 2e9), "6e9");
+        assert_eq!(decimal(-2.5e300, 5e299), "−2.5e300");
         assert_ne!(decimal(10.0, 1e-11), decimal(10.0 + 1e-11, 1e-11));
     }
 

@@ -38,7 +38,7 @@ fn parameters_outside_their_range_are_named_with_value_and_range() {
     let stiffness = "but must be a finite number of N/m ≥ 0; 0 takes it from the pile's weight";
     check(|s| s.parameters.stiffness = -1.0, &format!("stiffness is -1, {stiffness}"));
     check(|s| s.parameters.stiffness = f64::NAN, &format!("stiffness is NaN, {stiffness}"));
-    let damping = "but must be a finite number ≥ 0; 0 takes it from rho";
+    let damping = "but must be a finite number ≥ 0; 0 takes it from the restitution";
     check(|s| s.parameters.damping_ratio = -0.1, &format!("damping-ratio is -0.1, {damping}"));
     check(
         |s| s.parameters.damping_ratio = f64::INFINITY,

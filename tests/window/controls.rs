@@ -118,7 +118,7 @@ fn a_run_pauses_at_the_end_of_its_scene_and_plays_on_from_there() {
 fn what_makes_no_sense_is_refused_visibly() {
     let mut robot = Robot::open(pile());
     for (text, complaint) in
-        [("-5", "bond is -5, but must be a finite number ≥ 0"), ("strong", "“strong” is no number")]
+        [("-5", "Bond is -5, but must be a finite number ≥ 0"), ("strong", "“strong” is no number")]
     {
         robot.type_number("Bond", text);
         assert_eq!(robot.settings().parameters.bond, 20.0);
@@ -171,7 +171,7 @@ fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
     // No sweep can hold a grain that a step carries to infinity.
     let mut robot = Robot::open(pile());
     robot.key(egui::Key::ArrowRight);
-    robot.type_number("Δt, time step", "1e200");
+    robot.set(|settings| settings.parameters.time_step_secs = 1e200);
     robot.key(egui::Key::ArrowRight);
     robot.key(egui::Key::ArrowRight);
     let failure = robot.world().failure.clone().expect("a failure");
@@ -234,6 +234,27 @@ fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
     });
     let line = robot.state().command_line().expect("a command line");
     assert!(line.contains("--grains 600") && line.contains("--deposition drop-and-roll"), "{line}");
+}
+
+#[test]
+fn piles_of_more_than_800_grains_begin_with_40_sweeps_and_it_is_told() {
+    for (grains, is_fast) in [(800, false), (801, true), (2_000, true)] {
+        let source = SceneSource {
+            scene: Some("pile".into()),
+            grains: Some(grains),
+            box_width: Some(2.2 * (grains as f64).sqrt()),
+            deposition: Some(Deposition::DropAndRoll),
+            ..SceneSource::default()
+        };
+        let mut robot = Robot::open(Config { source, ..Config::default() });
+        let Settings { solver, .. } = robot.settings();
+        let sweeps = (solver.method == Method::NsgsParallel).then_some(solver.max_sweeps);
+        assert_eq!(sweeps, is_fast.then_some(40), "{grains} grains: {solver:?}");
+        robot.take_steps(1);
+        robot.harness.get_by_label_contains("Can I trust this?").click();
+        robot.frames(5);
+        assert_eq!(robot.shows(&format!("A step of {grains} grains gets 40 sweeps")), is_fast);
+    }
 }
 
 #[test]

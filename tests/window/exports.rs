@@ -250,7 +250,7 @@ fn a_run_that_blew_up_is_exported_up_to_its_last_finite_state() {
     let folder = folder();
     let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
     robot.take_steps(2);
-    robot.type_number("Δt, time step", "1e200");
+    robot.set(|settings| settings.parameters.time_step_secs = 1e200);
     robot.take_steps(3);
     assert!(robot.world().failure.is_some());
     let told = export(&mut robot);

@@ -2,6 +2,7 @@
 
 use crate::robot::*;
 use egui::Role;
+use slump::app::lessons::LESSONS;
 
 /// A window as it opens, with sliders that start the run again.
 fn open(config: Config) -> Robot {
@@ -111,14 +112,24 @@ fn controls(robot: &Robot) -> Vec<(Role, String)> {
     let is_control = |role: Role| {
         matches!(
             role,
-            Role::Button | Role::ComboBox | Role::CheckBox | Role::Slider | Role::SpinButton
+            Role::Button
+                | Role::ComboBox
+                | Role::CheckBox
+                | Role::Slider
+                | Role::SpinButton
+                | Role::TextInput
         )
     };
     let root = robot.harness.root();
     let all = root.children_recursive().map(|node| node.accesskit_node());
-    all.filter(|node| is_control(node.role()))
-        .map(|node| (node.role(), node.label().unwrap_or_default()))
-        .collect()
+    let all = all.filter(|node| is_control(node.role()));
+    let mut all: Vec<_> = all.map(|node| (node.role(), node.label().unwrap_or_default())).collect();
+    let sliders: Vec<String> = all
+        .iter()
+        .filter_map(|(_, label)| Some(label.strip_suffix(" slider")?.to_owned()))
+        .collect();
+    all.retain(|(role, label)| *role != Role::TextInput || !sliders.contains(label));
+    all
 }
 
 #[test]
@@ -136,24 +147,27 @@ fn a_newcomer_sees_no_more_than_twenty_controls() {
 fn no_text_of_the_front_is_cut_at_usual_sizes() {
     for size in [[1024.0, 700.0], [1280.0, 800.0], [1920.0, 1080.0], [2560.0, 1440.0]] {
         let mut robot = Robot::open(Config::default());
-        robot.state_mut().visit(0);
         robot.harness.set_size(egui::vec2(size[0], size[1]));
-        robot.settle();
-        robot.frames(5);
-        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size[0], size[1]));
-        let labels: Vec<_> = robot
-            .harness
-            .root()
-            .children_recursive()
-            .filter(|node| node.accesskit_node().role() == Role::Label)
-            .collect();
-        assert!(labels.len() >= 8, "the situation: {} labels", labels.len());
-        for label in labels {
-            let (rect, text) = (label.rect(), label.accesskit_node().value().unwrap_or_default());
-            assert!(window.contains_rect(rect.shrink(0.5)), "{size:?}: {text:?} at {rect:?}");
-            assert!(!text.contains('…'), "{size:?}: {text:?}");
+        for at in 0..LESSONS.len() {
+            robot.state_mut().visit(at);
+            robot.settle();
+            robot.frames(20);
+            assert_eq!(robot.cut_texts(), [""; 0], "{size:?}: lesson {} at its start", at + 1);
+            robot.take_steps(3);
+            robot.frames(5);
+            assert_eq!(robot.cut_texts(), [""; 0], "{size:?}: lesson {}", at + 1);
         }
     }
+}
+
+#[test]
+fn a_text_that_is_cut_is_found() {
+    let mut robot = Robot::open(Config::default());
+    robot.harness.set_size(egui::vec2(560.0, 700.0));
+    robot.state_mut().visit(3);
+    robot.settle();
+    robot.frames(10);
+    assert_eq!(robot.cut_texts(), [LESSONS[3].title]);
 }
 
 #[test]
@@ -207,20 +221,45 @@ fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
     assert_ne!(told(&robot), before, "the answer was of other settings");
 }
 
+const BEYOND_REASON: [(&str, &str, &str); 3] = [
+    ("Bond", "1e308", "Bond is 1e308, but must be at most 1e6"),
+    ("μ, friction", "1e9", "μ is 1e9, but must be at most 1e6"),
+    ("Δt, time step", "5", "Δt is 5, but must be at most 1"),
+];
+
 #[test]
-fn numbers_beyond_all_reason_widen_nothing() {
+fn numbers_beyond_all_reason_are_refused() {
     let mut robot = Robot::open(pile());
-    robot.click("Law, solver");
-    let tab = robot.state().controls["Pile"];
-    robot.take_steps(1);
-    for (field, value) in [("Bond", "1e308"), ("μ, friction", "1e9"), ("Δt, time step", "1e200")]
-    {
+    let before = robot.settings();
+    for (field, value, refusal) in BEYOND_REASON {
         robot.type_number(field, value);
+        robot.frames(2);
+        assert!(robot.shows(refusal), "{refusal}");
+        assert_eq!(robot.settings(), before);
     }
-    robot.take_steps(3);
-    robot.frames(10);
-    assert!(robot.world().failure.is_some(), "the situation");
-    assert_eq!(robot.state().controls["Pile"], tab, "the sidebar is where it was");
-    let slider = robot.state().controls["μ"];
-    assert!(slider.left() > 0.0 && slider.right() < tab.left(), "{slider:?}");
+    robot.type_number("ρ, restitution", "2");
+    robot.frames(2);
+    assert!(robot.shows("ρ is 2, but must be between 0 and 1"));
+}
+
+/// As a file may have them, or a window that was closed with them.
+#[test]
+fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
+    let places = |config: Config| {
+        let mut robot = Robot::open(config);
+        robot.click("Law, solver");
+        robot.take_steps(4);
+        robot.frames(10);
+        let failed = robot.world().failure.is_some();
+        (failed, ["Pile", "μ", "release"].map(|name| robot.state().controls[name]))
+    };
+    let (failed, usual) = places(pile());
+    assert!(!failed);
+    let mut config = pile();
+    let parameters = &mut config.parameters;
+    (parameters.bond, parameters.friction) = (Some(1e308), Some(1e9));
+    parameters.time_step_secs = Some(0.5);
+    let (failed, odd) = places(config);
+    assert!(failed, "the situation");
+    assert_eq!(odd, usual);
 }

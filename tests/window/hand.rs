@@ -26,6 +26,19 @@ fn count(robot: &Robot) -> usize {
 }
 
 #[test]
+fn a_press_and_release_in_one_frame_pin_a_grain() {
+    let mut robot = Robot::open(pile());
+    let pos = at(&robot, robot.world().snapshot.grains[60].position);
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+    robot.harness.event(Event::PointerMoved(pos));
+    for pressed in [true, false] {
+        robot.harness.event(Event::PointerButton { pos, button, pressed, modifiers });
+    }
+    robot.frames(2);
+    assert_eq!(robot.state().mouse.pinned, Some(GrainRef { world: 0, grain: 60 }));
+}
+
+#[test]
 fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     let mut robot = Robot::open(pile());
     robot.take_steps(10);

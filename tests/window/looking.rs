@@ -54,7 +54,7 @@ fn a_refusal_moves_no_control() {
     let before = place(&robot);
     robot.type_number("Bond", "-1");
     robot.harness.step();
-    assert!(robot.harness.query_by_label_contains("bond is -1").is_some(), "the refusal is told");
+    assert!(robot.harness.query_by_label_contains("Bond is -1").is_some(), "the refusal is told");
     assert_eq!(place(&robot), before);
 }
 
@@ -270,16 +270,8 @@ fn what_hardly_moves_rests_and_is_told_in_units_that_one_knows() {
     assert!(robot.shows("0.000 m/s, 0.000 m/s"), "grain {grain}");
 }
 
-#[test]
-fn symbols_and_ordinals_are_written_as_one_reads_them() {
-    // More rows than a curve has.
-    let mut config = Config::of_scene("cradle");
-    config.source.duration = Some(1e6);
-    let mut robot = Robot::open(config);
-    robot.send(Command::SetPace(Pace::Max));
-    robot.send(Command::Play);
-    robot.until("a long curve", |state| state.frame.worlds[0].snapshot.observables.step > 33_000);
-    robot.send(Command::Pause);
+/// Opens one page after the other, and asserts that no text has a word that is none.
+fn words_are_as_one_reads_them(robot: &mut Robot) {
     for page in Page::ALL {
         robot.state_mut().preferences.page = Some(page);
         robot.frames(5);
@@ -295,7 +287,33 @@ fn symbols_and_ordinals_are_written_as_one_reads_them() {
     }
     robot.state_mut().preferences.page = Some(Page::Compare);
     robot.frames(5);
+}
+
+#[test]
+fn symbols_and_ordinals_are_written_as_one_reads_them() {
+    // More rows than a curve has.
+    let mut config = Config::of_scene("cradle");
+    config.source.duration = Some(1e6);
+    let mut robot = Robot::open(config);
+    robot.send(Command::SetPace(Pace::Max));
+    robot.send(Command::Play);
+    robot.until("a long curve", |state| state.frame.worlds[0].snapshot.observables.step > 33_000);
+    robot.send(Command::Pause);
+    words_are_as_one_reads_them(&mut robot);
     assert!(robot.shows("plotted: one step in 2"), "the situation");
+}
+
+#[test]
+fn worlds_and_refusals_write_symbols_as_well() {
+    let mut robot = Robot::open(pile());
+    let mut other = robot.settings();
+    (other.parameters.restitution, other.parameters.friction) = (0.5, 0.3);
+    robot.send(Command::Compare(vec![robot.settings(), other]));
+    robot.type_number("ρ, restitution", "2");
+    robot.type_number("μ, friction", "-1");
+    words_are_as_one_reads_them(&mut robot);
+    assert!(robot.shows("2: ρ 0.5, μ 0.3"), "the situation");
+    assert!(robot.shows("ρ is 2, but") && robot.shows("μ is -1, but"), "the situation");
 }
 
 #[test]

@@ -64,6 +64,12 @@ fn a_step_in_the_past_deletes_nothing() {
     assert_eq!((robot.steps(), robot.world().curve.len()), (51, 52));
 }
 
+/// What the field of the time step shows.
+fn typed(robot: &Robot) -> String {
+    let field = robot.harness.get_by_role_and_label(egui::Role::TextInput, "Δt, time step");
+    field.accesskit_node().value().expect("a text")
+}
+
 #[test]
 fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     let mut robot = Robot::open(pile());
@@ -80,11 +86,16 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     assert_eq!(past.len(), 1);
     let of_past = past[0].worlds[0].controls.settings.parameters.time_step_secs;
     assert_eq!(of_past, 1e-3, "the run before is told of with its own time step");
+    assert_eq!(typed(&robot), "5e-3");
+    robot.click("Compare");
+    assert!(robot.shows("↶ Bond 20, Δt 1e-3 s, 0.050 s"), "and listed so");
 
     robot.command_key(egui::Key::Z);
     robot.settle();
     assert_eq!(curve_of(&robot), curve);
-    assert_eq!(robot.settings().parameters.time_step_secs, 1e-3, "and so are its sliders");
+    robot.frames(2);
+    assert_eq!(typed(&robot), "1e-3", "and so does its slider");
+    assert!(robot.shows("↶ Bond 20, Δt 5e-3 s, 0.025 s"));
     let past = robot.state().frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
     // What is undone can be done again, as often as one likes.

@@ -102,6 +102,22 @@ impl Robot {
         self.harness.query_all_by_label_contains(words).count() > 0
     }
 
+    /// All texts as they were painted last: where, within what, and whether dots stand for the rest of them.
+    pub fn painted_texts(&self) -> Vec<PaintedText> {
+        let mut all = Vec::new();
+        for clipped in &self.harness.output().shapes {
+            note_texts(&clipped.shape, clipped.clip_rect, &mut all);
+        }
+        all
+    }
+
+    /// Those of them that do not show whole.
+    pub fn cut_texts(&self) -> Vec<String> {
+        let is_cut =
+            |text: &PaintedText| text.elided || !text.within.contains_rect(text.rect.shrink(1.0));
+        self.painted_texts().into_iter().filter(is_cut).map(|text| text.text).collect()
+    }
+
     pub fn of_worlds<T>(&self, value: impl Fn(&WorldFrame) -> T) -> Vec<T> {
         self.state().frame.worlds.iter().map(value).collect()
     }
@@ -257,6 +273,31 @@ impl Robot {
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
         self.harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
         self.harness.step();
+    }
+}
+
+/// A text as it is painted.
+pub struct PaintedText {
+    pub text: String,
+    pub rect: egui::Rect,
+    /// Outside of it nothing shows.
+    pub within: egui::Rect,
+    /// True where dots stand for a part of it.
+    pub elided: bool,
+}
+
+fn note_texts(shape: &egui::Shape, within: egui::Rect, all: &mut Vec<PaintedText>) {
+    match shape {
+        egui::Shape::Vec(shapes) => {
+            shapes.iter().for_each(|shape| note_texts(shape, within, all));
+        }
+        egui::Shape::Text(shape) => all.push(PaintedText {
+            text: shape.galley.text().to_owned(),
+            rect: shape.visual_bounding_rect(),
+            within,
+            elided: shape.galley.elided,
+        }),
+        _ => {}
     }
 }
 

@@ -322,7 +322,7 @@ fn what_cannot_be_saved_is_told_of() {
     assert!(said.contains("but must be a folder that can be written to"), "{said}");
     robot.state_mut().preferences.folder = folder.path().to_owned();
     robot.take_steps(1);
-    robot.type_number("Δt, time step", "1e200");
+    robot.set(|settings| settings.parameters.time_step_secs = 1e200);
     robot.take_steps(3);
     assert!(robot.world().failure.is_some());
     let said = save(&mut robot);

@@ -57,14 +57,23 @@ pub struct Control {
     pub hint: &'static str,
     /// Ends of a number's slider. Typed values may lie outside.
     pub range: [f64; 2],
+    /// The largest number that can be typed: beyond it lies no physics, but a slip of the finger.
+    pub most: f64,
     /// True where equal distances on the slider are equal factors.
     pub logarithmic: bool,
 }
 
 impl Control {
     /// A control without a slider, or one from 0 to 1.
-    pub(crate) const PLAIN: Self =
-        Self { label: "", symbol: "", unit: "", hint: "", range: [0.0, 1.0], logarithmic: false };
+    pub(crate) const PLAIN: Self = Self {
+        label: "",
+        symbol: "",
+        unit: "",
+        hint: "",
+        range: [0.0, 1.0],
+        most: f64::INFINITY,
+        logarithmic: false,
+    };
 }
 
 /// A control of which no more is said.

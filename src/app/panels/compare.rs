@@ -3,7 +3,7 @@
 use egui::{Button, RichText, Ui};
 
 use crate::app::budget::{BUDGETS, PAPER};
-use crate::app::setting_control::written;
+use crate::app::setting_control::{called, written};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::{Command, Controls};
@@ -217,14 +217,16 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
 
 /// A setting in a title.
 fn said(settings: &Settings, name: &str) -> Option<String> {
+    let about = Settings::about().find(|about| about.name == name)?;
+    let (symbol, unit) = (called(about), about.control.map_or("", |control| control.unit));
     Some(match (name, settings.get(name)?) {
-        ("bond", Value::Number(bond)) => format!("Bond {}", written(bond)),
-        ("dt", Value::Number(secs)) => format!("Δt {} s", written(secs)),
         ("stepper" | "solver" | "friction-model", Value::Word(word)) => word.to_owned(),
         ("model-solves", Value::Count(count)) => format!("{count} solves"),
         ("max-sweeps", Value::Count(count)) => format!("{count} sweeps"),
-        (_, Value::Number(number)) => format!("{name} {}", written(number)),
-        (_, Value::Count(count)) => format!("{name} {count}"),
+        (_, Value::Number(number)) => {
+            format!("{symbol} {} {unit}", written(number)).trim_end().to_owned()
+        }
+        (_, Value::Count(count)) => format!("{symbol} {count}"),
         (_, Value::Switch(on)) => format!("{} {name}", if on { "with" } else { "without" }),
         (_, Value::Word(word)) => format!("{name} {word}"),
     })
@@ -250,6 +252,9 @@ mod tests {
         let few = SolverSettings { method: Method::Nsgs, max_sweeps: 5, ..SolverSettings::PAPER };
         let few = Settings { solver: few, ..base };
         assert_eq!(titles(&[few, base]), ["nsgs, 5 sweeps", "Certified"]);
+        let mut other = base;
+        (other.parameters.restitution, other.parameters.friction) = (0.5, 0.3);
+        assert_eq!(titles(&[base, other]), ["ρ 0, μ 0", "ρ 0.5, μ 0.3"]);
         let mut cone = base;
         cone.parameters.cone = FrictionCone::Compressive;
         assert_eq!(titles(&[base, cone]), ["cone shifted", "cone compressive"]);

@@ -7,8 +7,8 @@ use egui::{RichText, Ui};
 use egui_plot::{Bar, BarChart};
 
 use crate::Instant;
+use crate::app::axes::bare_plot;
 use crate::app::opening::TakenRun;
-use crate::app::plots::bare_plot;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::app::work::Work;

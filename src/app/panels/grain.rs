@@ -48,6 +48,11 @@ pub(crate) fn show_over_scene(ui: &Ui, state: &mut AppState) {
 /// Slower than this, m/s, a grain rests: what is left is the solver's.
 const AT_REST: f64 = 1e-8;
 
+/// A velocity, m/s, or nothing of one at which a grain rests.
+pub(super) fn unless_at_rest(velocity: f64) -> f64 {
+    if velocity.abs() < AT_REST { 0.0 } else { velocity }
+}
+
 /// The state of a grain, as a small table.
 pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     let grain = &world.snapshot.grains[index];
@@ -62,7 +67,7 @@ pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         let at = grain.position / diameter;
         row("position", format!("{:.3}, {:.3} d", at.x, at.y));
         row("radius", format!("{:.3} d", grain.radius / diameter));
-        let speed = |along: f64| si(if along.abs() < AT_REST { 0.0 } else { along }, "m/s");
+        let speed = |along: f64| si(unless_at_rest(along), "m/s");
         row("velocity", format!("{}, {}", speed(grain.velocity.x), speed(grain.velocity.y)));
         // No minus before a zero.
         row("spin", format!("{:.3} rad/s", grain.angular_velocity).replace("-0.000", "0.000"));

@@ -244,12 +244,14 @@ fn title(run: &PastRun) -> String {
     }
 }
 
-/// The run that shows as a ghost.
+/// The run that shows as a ghost: the last one, where no more than one of its worlds was other than now. Of another comparison,
+/// a ghost would stand beside numbers that are not its own.
 pub(super) fn ghost(state: &AppState) -> Option<&PastRun> {
-    let count = state.frame.worlds.len();
-    // Of another comparison, a ghost would stand beside numbers that are not its own.
-    let is_alike = |run: &&PastRun| state.preferences.ghost && run.worlds.len() == count;
-    state.frame.past.last().filter(is_alike)
+    let (last, worlds) = (state.frame.past.last()?, &state.frame.worlds);
+    let others = last.worlds.iter().zip(worlds.iter());
+    let others = others.filter(|(past, now)| past.controls.settings != now.controls.settings);
+    let is_alike = last.worlds.len() == worlds.len() && others.count() <= 1;
+    (state.preferences.ghost && is_alike).then_some(last)
 }
 
 #[cfg(test)]
@@ -257,9 +259,10 @@ mod tests {
     use super::*;
     use crate::app::preferences::Preferences;
     use crate::live::{Live, LiveOptions};
+    use crate::sim::Settings;
 
     #[test]
-    fn a_ghost_never_stands_beside_worlds_of_another_number() {
+    fn a_ghost_stands_beside_worlds_of_which_one_was_changed_and_no_others() {
         let live = Live::spawn(LiveOptions::default()).unwrap();
         let preferences = Preferences { ensemble: false, ..Preferences::default() };
         let mut state = AppState::new(live, Config::default(), preferences);
@@ -274,8 +277,19 @@ mod tests {
         state.live.send(Command::Reset);
         settle(&mut state);
         assert!(ghost(&state).is_some(), "of the run before");
-        state.live.send(Command::Compare(vec![settings, settings.with_bond(50.0)]));
-        settle(&mut state);
-        assert!(!state.frame.past.is_empty() && ghost(&state).is_none());
+        let mut compare = |worlds: &[Settings]| {
+            state.step();
+            state.live.send(Command::Compare(worlds.to_vec()));
+            settle(&mut state);
+            assert!(!state.frame.past.is_empty(), "the situation");
+            ghost(&state).is_some()
+        };
+        let [weak, strong] = [0.0, 50.0].map(|bond| settings.with_bond(bond));
+        assert!(!compare(&[settings, weak]), "of one world beside two");
+        assert!(compare(&[settings, strong]), "one slider was moved");
+        assert!(compare(&[settings, strong]), "none was");
+        assert!(!compare(&[weak, settings]), "of another experiment");
+        assert!(!compare(&[settings]), "of two worlds beside one");
+        assert!(compare(&[strong]), "its slider was moved");
     }
 }

@@ -8,8 +8,8 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 
 use super::grain::compact;
 use crate::Instant;
+use crate::app::axes::{plot_with_axes, with_least, with_room};
 use crate::app::opening::TakenRun;
-use crate::app::plots::plot_with_axes;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::app::work::{Reporter, Work};
@@ -210,7 +210,11 @@ fn now(state: &AppState, race: &StepRace) -> Option<[f64; 2]> {
 fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
     let dark = ui.visuals().dark_mode;
     ui.label(RichText::new("residual against ms a step").small());
-    plot_with_axes(ui, "speed and accuracy", HEIGHT, [true; 2], "")
+    let ends = [0, 1].map(|axis| {
+        let points = curves.iter().flat_map(|curve| &curve.points);
+        with_room(points.map(|point| point[axis].log10()).chain(now.map(|now| now[axis])), true)
+    });
+    with_least(plot_with_axes(ui, "speed and accuracy", HEIGHT, [true; 2], ""), ends)
         .allow_drag(false)
         .allow_zoom(false)
         .show(ui, |plot| {

@@ -4,6 +4,7 @@
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
 use super::GrainRef;
+use super::grain::unless_at_rest;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::{ContactView, GrainView, Snapshot};
@@ -40,7 +41,9 @@ const GRAINS: [Column<GrainView>; 7] = [
     column("grain", 5, true, "Its number.", |index, _, _| index as f64),
     column("x", 8, false, "x over d.", |_, grain, d| grain.position.x / d),
     column("y", 8, false, "y over d.", |_, grain, d| grain.position.y / d),
-    column("speed", 8, false, "Of its centre, m/s.", |_, grain, _| grain.velocity.length()),
+    column("speed", 8, false, "Of its centre, m/s; 0 where it rests.", |_, grain, _| {
+        unless_at_rest(grain.velocity.length())
+    }),
     column("overlap", 8, false, "The deepest, over d.", |_, grain, d| grain.overlap / d),
     column("force", 8, false, "Σ|N| over its contacts, N.", |_, grain, _| grain.force),
     column("n", 2, true, "Its contacts.", |_, grain, _| f64::from(grain.coordination)),

@@ -40,6 +40,7 @@ settings! {
                 hint: "Cohesion: a contact pulls with up to so many times the weight of its effective mass \
                        m_i·m_j/(m_i + m_j), which for two equal discs is half a disc's, and on a base a whole one's.",
                 range: [0.0, 200.0],
+                most: 1e6,
                 ..Control::PLAIN
             }),
         }
@@ -54,6 +55,7 @@ settings! {
                 hint: "One step of the computation; cohesion cancels the opening speed Bond·g·Δt \
                        in each.",
                 range: [1e-5, 1e-2],
+                most: 1.0,
                 logarithmic: true,
             }),
         }
@@ -78,6 +80,7 @@ settings! {
                 symbol: "μ",
                 hint: "Largest tangential force, in units of the normal force plus cohesion.",
                 range: [0.0, 2.0],
+                most: 1e6,
                 ..Control::PLAIN
             }),
         }
@@ -112,6 +115,7 @@ settings! {
                 hint: "How far a bond is opened before it breaks, in mean diameters.",
                 range: [1e-3, 0.1],
                 logarithmic: true,
+                ..Control::PLAIN
             }),
         }
         #[serde(default, skip_serializing_if = "is_zero")]
@@ -143,6 +147,7 @@ settings! {
                        the pile's own weight makes an overlap of 1e-3 d.",
                 range: [0.0, 1e5],
                 logarithmic: true,
+                ..Control::PLAIN
             }),
         }
         /// ζ of the stepper `dem`: of a contact by itself, in critical damping; 0 takes that which ρ asks for.
@@ -150,7 +155,7 @@ settings! {
         #[serde(default, skip_serializing_if = "is_zero")]
         damping_ratio: f64 = 0.0, "damping-ratio" ("ZETA"),
             "Damping ratio of the contacts of the stepper dem, in place of rho; 0 takes it from rho", {
-            allowed: "a finite number ≥ 0; 0 takes it from rho",
+            allowed: "a finite number ≥ 0; 0 takes it from the restitution",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
                 label: "ζ, damping ratio",

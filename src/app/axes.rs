@@ -1,0 +1,109 @@
+//! Axes of plots: how much they show at least, and the numbers along them.
+
+use egui::Ui;
+use egui_plot::{AxisHints, GridInput, GridMark, Plot};
+
+use crate::render::numbers::{decimal, ticks};
+
+/// Least height of a vertical axis, as a part of its largest value.
+const LEAST_SPAN: f64 = 1e-3;
+/// The same of one that is logarithmic: two powers of ten are within it wherever it lies.
+const LEAST_DECADES: f64 = 2.0;
+/// A plot with the look of all of them. The wheel does not zoom it.
+pub(super) fn bare_plot<'a>(
+    ui: &Ui,
+    id: impl std::hash::Hash + std::fmt::Debug,
+    height: f32,
+) -> Plot<'a> {
+    Plot::new(id)
+        .height(height)
+        .allow_scroll(false)
+        // egui would fill it pixel by pixel (see `fill`).
+        .show_background(false)
+        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+}
+
+/// A plot with an axis along x in that unit; `log` says which axes are logarithmic.
+pub(super) fn plot_with_axes<'a>(
+    ui: &Ui,
+    id: impl std::hash::Hash + std::fmt::Debug,
+    height: f32,
+    log: [bool; 2],
+    x_unit: &'static str,
+) -> Plot<'a> {
+    let y_hints = AxisHints::new_y().min_thickness(34.0);
+    bare_plot(ui, id, height)
+        // Half of the last label lies right of the plot.
+        .width(ui.available_width() - 10.0)
+        .x_grid_spacer(move |grid| round_marks(grid, log[0]))
+        .y_grid_spacer(move |grid| round_marks(grid, log[1]))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), log[0], x_unit)])
+        .custom_y_axes(vec![axis(y_hints, log[1], "")])
+}
+
+/// The same plot, which shows at least so much along x and y.
+pub(super) fn with_least(plot: Plot<'_>, ends: [[f64; 2]; 2]) -> Plot<'_> {
+    let [[left, right], [bottom, top]] = ends;
+    plot.include_x(left).include_x(right).include_y(bottom).include_y(top)
+}
+
+/// What an axis shows at least of such values, or of their logarithms: around those that hardly differ, more than the digits
+/// of their rounding, or two powers of ten.
+pub(super) fn with_room(values: impl Iterator<Item = f64>, log: bool) -> [f64; 2] {
+    let ends = values.filter(|value| value.is_finite()).map(|value| [value, value]);
+    let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);
+    let [low, high] = ends.unwrap_or_default();
+    let most = low.abs().max(high.abs());
+    let least = if log { LEAST_DECADES } else { LEAST_SPAN * most };
+    let room = (0.5 * (least - (high - low))).max(0.0);
+    [low - room, high + room]
+}
+
+/// Two to five marks at round numbers, or at whole powers of ten.
+fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
+    let (low, high) = grid.bounds;
+    if log {
+        let marks = |step: i64| {
+            let ends = [low, high].map(|end| end / step as f64);
+            ends[0].ceil() as i64..=ends[1].floor() as i64
+        };
+        let widest = (((high - low) / 3.0).ceil() as i64).max(1);
+        let step = (1..=widest).rev().find(|&step| marks(step).count() > 1).unwrap_or(1);
+        let step_size = step as f64;
+        let mark = |count: i64| GridMark { value: count as f64 * step_size, step_size };
+        return marks(step).map(mark).collect();
+    }
+    let (values, step_size) = ticks(low, high, 4);
+    values.into_iter().map(|value| GridMark { value, step_size }).collect()
+}
+
+/// Labels of the marks: numbers, or the powers of ten that numbers stand for.
+fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
+    hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
+        if log {
+            return format!("1e{}", mark.value);
+        }
+        format!("{}{unit}", decimal(mark.value, mark.step_size))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_never_has_one_number_alone() {
+        let grid = |low, high| GridInput { bounds: (low, high), base_step_size: 1.0 };
+        for place in 0..400 {
+            let low = -7.3 + 0.037 * f64::from(place);
+            for span in [1e-6, 1e-3, 0.4, 1.0, 2.0, 3.2, 5.7, 6.1, 9.0, 1e3] {
+                let count = round_marks(grid(low, low + span), false).len();
+                assert!((2..=5).contains(&count), "{low} and {span} more: {count}");
+                if span >= LEAST_DECADES {
+                    let count = round_marks(grid(low, low + span), true).len();
+                    assert!((2..=5).contains(&count), "1e{low} and {span} decades more: {count}");
+                }
+            }
+        }
+    }
+}
