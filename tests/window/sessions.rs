@@ -331,3 +331,22 @@ fn what_cannot_be_saved_is_told_of() {
     let shown = robot.harness.query_all_by_label(expected).count();
     assert_eq!(shown, 1, "a run that cannot go on hides no answer");
 }
+
+#[test]
+fn a_session_that_is_saved_in_the_middle_of_a_step_opens_and_goes_on() {
+    let files = folder();
+    let mut robot = Robot::open(pile());
+    let base = robot.settings();
+    robot.send(Command::Compare(vec![base.over(1e-7), base.over(2e-3)]));
+    robot.state_mut().step();
+    robot.until("the middle of the step", |state| {
+        state.frame.seeking && state.frame.worlds[0].snapshot.observables.step > 100
+    });
+    let path = robot.save_session(files.path());
+    let mut opened = Robot::open_saved(&path);
+    let rows = opened.of_worlds(|world| world.snapshot.observables);
+    assert!(rows[0].step > 100 && rows[0].step < 20_000, "{}", rows[0].step);
+    opened.take_steps(1);
+    let rows = opened.of_worlds(|world| world.snapshot.observables);
+    assert!((rows[0].time_secs - rows[1].time_secs).abs() < 1e-9);
+}
