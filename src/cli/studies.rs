@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 
+use crate::VERSION;
 use crate::config::{Config, joined, parser_of};
 use crate::error::{Error, Result};
 use crate::headless::draw_snapshots;
@@ -225,7 +226,7 @@ impl StudyCommand {
                 budget(&options, &out).map(drop)
             }
             Self::Reproduce { figures, out, quick } => {
-                reproduce(&figures, &out, quick, draw_snapshots)
+                reproduce(&figures, &out, quick, VERSION, draw_snapshots)
             }
             Self::Chart { out, quick, large, only } => {
                 chart_speed(&ChartOptions { out, quick, large, only })

@@ -37,6 +37,12 @@ fn is_printed(text: &str, value: &Value) -> bool {
     rounded.parse::<f64>().ok() == plain.parse().ok()
 }
 
+/// What stands below a heading, up to the next one.
+fn section(text: &str, name: &str) -> String {
+    let lines = text.lines().skip_while(|it| !(it.starts_with('#') && anchor(it) == name));
+    lines.skip(1).take_while(|it| !it.starts_with('#')).collect::<Vec<_>>().join("\n")
+}
+
 #[test]
 fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
     let mut wrong = Vec::new();
@@ -56,6 +62,11 @@ fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
             };
             if !path.exists() {
                 complain("no such file");
+            } else if target.contains("/reports/") && !fragment.is_empty() {
+                numbers += 1;
+                if !section(&read(&path), fragment).contains(said) {
+                    complain("the report's section has no such words");
+                }
             } else if let Some(pointer) = target.contains(".json#").then_some(fragment) {
                 numbers += 1;
                 match json(&path).pointer(pointer) {

@@ -65,8 +65,19 @@ pub(crate) struct LookAhead {
     pub distance: f64,
     /// Farther pairs are none, m.
     pub reach: f64,
-    /// True where pairs that have touched are bonded from then on, and contacts until the bond breaks.
-    pub bonds: bool,
+    /// Which of the contacts are in touch.
+    pub in_touch: InTouch,
+}
+
+/// Which pairs are in touch and pull, others just come near.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum InTouch {
+    /// Those that touch as the step begins.
+    Touching,
+    /// Those that have touched: they are bonded from then on, and contacts until the bond breaks.
+    Bonded,
+    /// Those whose gap is no larger as the step begins, m.
+    Within(f64),
 }
 
 impl LookAhead {
@@ -75,9 +86,9 @@ impl LookAhead {
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
         /// What rounding makes of a speed.
         const ROUNDING: f64 = 1.0 + 1e-9;
-        match self.bonds {
-            true => 0.5 * self.reach,
-            false => {
+        match self.in_touch {
+            InTouch::Bonded => 0.5 * self.reach,
+            InTouch::Touching | InTouch::Within(_) => {
                 let own = self.time_step_secs * velocity.length() + self.distance;
                 ROUNDING * own.min(self.reach)
             }
@@ -86,7 +97,7 @@ impl LookAhead {
 
     /// The gap that what is no grain is to be seen at besides, m.
     pub(crate) fn way_of_others(&self) -> f64 {
-        if self.bonds { 0.5 * self.reach } else { 0.0 }
+        if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 }
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec2;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 
-use super::approach::{LookAhead, approach};
+use super::approach::{InTouch, LookAhead, approach};
 use super::candidates::Candidates;
 use super::numbering::{Numbering, Other};
 use super::range::Bond;
@@ -304,10 +304,13 @@ impl ContactList {
         let velocities = &world.grains.velocities;
         self.find::<AXES>(world, candidates, |contact, bond| {
             let gap = contact.gap;
-            if !ahead.bonds {
-                *bond = Bond { alive: gap < gap_tolerance, stretch: 0.0 };
-            } else if gap <= gap_tolerance && !bond.alive {
-                *bond = Bond { alive: true, stretch: 0.0 };
+            match ahead.in_touch {
+                InTouch::Touching => *bond = Bond { alive: gap < gap_tolerance, stretch: 0.0 },
+                InTouch::Within(most) => *bond = Bond { alive: gap <= most, stretch: 0.0 },
+                InTouch::Bonded if gap <= gap_tolerance && !bond.alive => {
+                    *bond = Bond { alive: true, stretch: 0.0 };
+                }
+                InTouch::Bonded => (),
             }
             if bond.alive {
                 return true;

@@ -13,7 +13,7 @@ pub mod range;
 mod too_close;
 mod transmitted;
 
-pub(crate) use approach::{LookAhead, RelativeMotion};
+pub(crate) use approach::{InTouch, LookAhead, RelativeMotion};
 pub use broad_phase::BroadPhase;
 #[doc(hidden)]
 pub use broad_phase::Grid;

@@ -8,8 +8,8 @@
 //! **Older laws of finite range.** The wet law of LMGC90, `IQS_WET_DS_CLB` (its manual, *Contact laws*), has Signorini's and
 //! Coulomb's laws on R_n + C₀ for every pair whose gap is at most W_thk as the step begins: a constant pull over a finite range,
 //! and the shifted cone. Its `xQS_WET_DS_CLB` lets what is broken stay so. Both go by the gap, pull through the whole of a step,
-//! and do not bounce. Here a pair pulls once it has touched, by what has stretched it since; breaking it takes the same work at
-//! every Δt; and what meets bounces.
+//! and do not bounce; `examples/wet_law.rs` is such a law. Here a pair pulls once it has touched, by what has stretched it
+//! since; breaking it takes the same work at every Δt; and what meets bounces.
 //!
 //! **Why a step needs a bound of its own.** A step that is long against the time of a break,
 //! √(2δ_c m_ij/C₀), sees nothing of it but its beginning. If all it knows is N ≥ −C₀, the bond may pull

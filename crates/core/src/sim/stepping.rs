@@ -1,6 +1,6 @@
 //! What all ways to step share: the step's problem on its stage, the cut into pieces, the step's result.
 
-use crate::contact::{ContactList, LookAhead};
+use crate::contact::{ContactList, InTouch, LookAhead};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
@@ -112,6 +112,20 @@ impl<'a, M: Model> Stage<'a, M> {
         rebound: impl Fn(Approach) -> f64 + Copy + Sync,
     ) {
         self.prepare_ahead(settings, |_| None, rebound);
+    }
+
+    /// The same for a law of finite range that goes by the gap: the contacts are the pairs that are no farther apart than
+    /// `range` (m) as the step begins, and all of them pull.
+    pub fn prepare_within(
+        &mut self,
+        settings: &Settings,
+        range: f64,
+        rebound: impl Fn(Approach) -> f64 + Copy + Sync,
+    ) {
+        let time_step_secs = settings.parameters.time_step_secs;
+        let in_touch = InTouch::Within(range);
+        let ahead = LookAhead { time_step_secs, distance: range, reach: range, in_touch };
+        self.prepare_ahead(settings, |_| Some(ahead), rebound);
     }
 
     /// The same with the contacts that the step may come to as well, as far as `look_ahead` says of a step

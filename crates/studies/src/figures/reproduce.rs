@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
+use crate::machine::Machine;
 use crate::output::{check_writable, note_line, print_line, print_text, write_file};
 use crate::report::write_sheet;
 use crate::solver::worst;
@@ -22,7 +23,7 @@ pub fn figure_names() -> Vec<&'static str> {
 
 /// Makes the figures of those names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies
 /// lie below it, so that the same call goes on where one was stopped. `snapshots` draws the pictures
-/// of grains, Fig. 3, 4 and 7, into a folder.
+/// of grains, Fig. 3, 4 and 7, into a folder. The report says that `version` of the program made it.
 ///
 /// # Errors
 /// Where a name is unknown, the folder cannot be written, or a study fails.
@@ -30,6 +31,7 @@ pub fn reproduce(
     names: &[String],
     folder: &Path,
     quick: bool,
+    version: &str,
     snapshots: impl FnOnce(&Path) -> Result<()>,
 ) -> Result<()> {
     let started = Instant::now();
@@ -63,7 +65,13 @@ pub fn reproduce(
         let pictures = SNAPSHOTS.map(|name| format!("\n![{name}]({name}.png)\n"));
         report.push_str(&format!("\n## Snapshots\n{}", pictures.concat()));
     }
-    report.push_str(&closing(&studies, started.elapsed().as_secs_f64()));
+    report.push_str(&closing(&studies));
+    let _ = writeln!(
+        report,
+        "\nMade by slump {version} in {:.0} s, studies that were there before not counted: {}.",
+        started.elapsed().as_secs_f64(),
+        Machine::this()?.words()
+    );
     let path = folder.join("report.md");
     write_file(&path, report.as_bytes())?;
     print_line(path.display());
@@ -112,7 +120,7 @@ fn section(info: &FigureInfo, figure: &Figure) -> String {
     text
 }
 
-fn closing(studies: &StudyRunner, secs: f64) -> String {
+fn closing(studies: &StudyRunner) -> String {
     let mut text = String::from(
         "\n## Studies\n\n| study | runs | core seconds | steps not solved as asked | largest residual \
              | not finite |\n|---|---|---|---|---|---|\n",
@@ -131,12 +139,5 @@ fn closing(studies: &StudyRunner, secs: f64) -> String {
             table.not_finite()
         );
     }
-    let _ = writeln!(
-        text,
-        "\nMade by slump {} in {secs:.0} s on {} threads, studies that were there before not \
-             counted.",
-        env!("CARGO_PKG_VERSION"),
-        rayon::current_num_threads()
-    );
     text
 }

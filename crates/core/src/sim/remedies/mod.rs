@@ -11,7 +11,7 @@ pub(super) mod sequential_impacts;
 
 use glam::DVec2;
 
-use crate::contact::{LookAhead, Numbering};
+use crate::contact::{InTouch, LookAhead, Numbering};
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
@@ -279,7 +279,7 @@ pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhea
         time_step_secs,
         distance: by_forces,
         reach: way.min(FARTHEST_IN_DIAMETERS * world.mean_diameter),
-        bonds: false,
+        in_touch: InTouch::Touching,
     }
 }
 

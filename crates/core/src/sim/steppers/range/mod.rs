@@ -20,7 +20,7 @@ use glam::DVec2;
 
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
-use crate::contact::{LookAhead, Numbering, Other};
+use crate::contact::{InTouch, LookAhead, Numbering, Other};
 use crate::error::Error;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
@@ -71,7 +71,7 @@ fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
     let distance = travel.min(near);
     let reach = (distance + 2.0 * travel).min(far);
-    LookAhead { time_step_secs, distance, reach, bonds: true }
+    LookAhead { time_step_secs, distance, reach, in_touch: InTouch::Bonded }
 }
 
 /// How far a grain may go in a step that has begun, m.

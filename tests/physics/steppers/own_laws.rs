@@ -1,0 +1,53 @@
+//! Laws of one's own (`Stage::prepare_within`): one of finite range that goes by the gap.
+
+use crate::common::*;
+use slump::sim::{Advance, Stage, StepResult};
+use slump::solver::{Approach, Model};
+
+const RADIUS: f64 = 2.5e-3;
+const BOND: f64 = 20.0;
+const RANGE: f64 = 0.01 * 2.0 * RADIUS;
+
+struct Wet;
+
+impl Advance for Wet {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
+        let time_step_secs = settings.parameters.time_step_secs;
+        let rebound = |Approach { gap, .. }| gap.max(0.0) / time_step_secs;
+        stage.prepare_within(settings, RANGE, rebound);
+        let report = stage.solve(settings);
+        stage.move_by(report, settings)
+    }
+}
+
+/// v of a grain after a step that begins with a gap to a fixed disc and a speed away from it, m/s.
+fn after_a_step(gap: f64, speed: f64, time_step_secs: f64, physics: Physics) -> f64 {
+    let grain = moving((2.0 * RADIUS + gap) * DVec2::X, RADIUS, speed * DVec2::X);
+    // Gravity that the grain does not feel says what Bond means.
+    let grains = vec![Grain { feels_gravity: false, ..grain }];
+    let mut run = start(&Scene {
+        fixed_discs: vec![fixed(DVec2::ZERO, RADIUS)],
+        solver: certain(),
+        ..scene(physics, G * DVec2::X, range(BOND, time_step_secs), grains)
+    });
+    run.step_by(&mut Wet).expect("a finite state");
+    run.velocity(0).x
+}
+
+#[test]
+fn a_law_that_goes_by_the_gap_pulls_through_the_whole_step_and_no_farther_than_to_touch() {
+    for (physics, time_step_secs) in pairs([LINE, SMOOTH, Physics::FULL], [1e-4, 1e-3, 5e-3]) {
+        let pull = BOND * G * time_step_secs;
+        for (gap, speed) in pairs([0.0, 0.3 * RANGE, 0.99 * RANGE], [0.0, 0.5 * pull, 3.0 * pull]) {
+            let expected = (speed - pull).max(-gap / time_step_secs);
+            let found = after_a_step(gap, speed, time_step_secs, physics);
+            let off = (found - expected).abs();
+            assert!(
+                off < 1e-9 * pull,
+                "gap {gap}, {speed} m/s, {time_step_secs} s: {found}, not {expected}"
+            );
+        }
+        let beyond = after_a_step(1.01 * RANGE, 0.5 * pull, time_step_secs, physics);
+        assert_eq!(beyond, 0.5 * pull, "beyond its range it pulls nothing");
+    }
+}
