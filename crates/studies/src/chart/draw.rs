@@ -8,6 +8,7 @@ use plotters::coord::Shift;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
+use super::even_lines::EvenLines;
 use super::{Axis, Chart, INK, Layer, Look, MapCell, Point, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::output::Texts;
@@ -43,7 +44,8 @@ pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
     let layout = Layout::of(sheet);
     let (width, height) = layout.size;
     let mut pixels = vec![0; 3 * width as usize * height as usize];
-    draw(&layout, BitMapBackend::with_buffer(&mut pixels, layout.size).into_drawing_area())?;
+    let bitmap = BitMapBackend::with_buffer(&mut pixels, layout.size);
+    draw(&layout, EvenLines(bitmap).into_drawing_area())?;
     let image = RgbImage::from_raw(width, height, pixels)
         .ok_or_else(|| failed("the picture has another size"))?;
     let mut texts = Texts::default();

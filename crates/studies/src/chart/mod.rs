@@ -2,6 +2,7 @@
 //! PNG, the SVG and the CSV, so that the CSV holds every point.
 
 mod draw;
+mod even_lines;
 
 pub use draw::{png, svg};
 
