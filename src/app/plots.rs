@@ -421,10 +421,8 @@ mod tests {
             let last = times_secs[points - 1];
             assert_eq!(ends, [1.0, 2.0, 6.0, 3.0].map(|slope| slope * last));
         }
-        assert!(
-            others(&plots_of(WorldCurve { others: None, ..world }, Vec::new()).worlds[0], 1.0)
-                .is_empty()
-        );
+        let alone = WorldCurve { others: None, ..world };
+        assert!(others(&alone, 1.0).is_empty());
     }
 
     /// Numbers along x and along y of a plot that is painted alone.
@@ -433,13 +431,9 @@ mod tests {
         let mut painted = Vec::new();
         // Plots find their size in their first frames.
         for _ in 0..4 {
-            let input = egui::RawInput {
-                screen_rect: Some(egui::Rect::from_min_size(
-                    egui::Pos2::ZERO,
-                    egui::vec2(500.0, 260.0),
-                )),
-                ..egui::RawInput::default()
-            };
+            let size = egui::vec2(500.0, 260.0);
+            let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
+            let input = egui::RawInput { screen_rect, ..egui::RawInput::default() };
             let output = context.run_ui(input, |ui| {
                 draw(ui, data);
             });
