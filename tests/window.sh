@@ -55,6 +55,7 @@ wait_for "one step" "s['step'] == $step + 1"
 
 # What was computed goes to files: the last moment, and all of them.
 xdotool mousemove $(at save 0.5) click 1
+wait_for "the page Save" "'Save state' in s['controls']"
 sleep 1
 at_secs=$(value "'%.4f' % s['time_secs']")
 xdotool mousemove $(at "Save state" 0.5) click 1
@@ -123,8 +124,10 @@ import -window root "$shots/window-recovered.png"
 # Switches other piles on or off, on their page, until the expression is true.
 switch_other_piles() {
     xdotool mousemove $(at more 0.5) click 1
+    wait_for "the pages" "'Compare' in s['controls']"
     sleep 1
     xdotool mousemove $(at Compare 0.5) click 1
+    wait_for "the page Compare" "'other piles' in s['controls']"
     sleep 1
     xdotool mousemove $(at "other piles" 0.1) click 1
     wait_for "other piles" "$1"
