@@ -33,6 +33,7 @@ pub(crate) fn _budget(
         to_secs: end,
         within,
         cost_secs,
+        shard: None,
     };
     let mut interrupted = None;
     let made = py.detach(|| {

@@ -20,6 +20,7 @@ use crate::study::stability::{
 use crate::study::{
     BudgetOptions, ChartOptions, ChartPart, RunsTable, Shard, Study, SweepOptions, ValidateOptions,
     budget, chart_speed, experiment_names, figure_names, merge, reproduce, sweep, validate,
+    write_means,
 };
 use crate::threads::make_threads;
 
@@ -80,6 +81,9 @@ pub(super) enum StudyCommand {
         /// Time to take on all cores: 90s, 30min, 2h
         #[arg(long = "cost", value_name = "TIME", help_heading = "Budget", default_value = "5min", value_parser = secs_of)]
         cost_secs: f64,
+        /// Take part K of N of the starts alone, on another machine; the same command without it joins what lies in the folder
+        #[arg(long, value_name = "K/N", help_heading = "Budget")]
+        shard: Option<String>,
         /// Folder for the answer, its picture and tables; the same command goes on where it stopped
         #[arg(long, value_name = "DIR", help_heading = "Budget")]
         out: PathBuf,
@@ -195,8 +199,7 @@ impl StudyCommand {
             } => {
                 let study = Study::read(&study, quick)?;
                 let out = out.unwrap_or_else(|| parts[0].clone());
-                report_runs(&merge(&study, &parts, &out)?, &out);
-                Ok(())
+                report_runs(&study, &merge(&study, &parts, &out)?, &out)
             }
             Self::Sweep { command: Some(SweepAction::Count { study, quick }), .. } => {
                 print_line(Study::read(&study, quick)?.runs.len());
@@ -210,19 +213,33 @@ impl StudyCommand {
                 if list {
                     return list_runs(&path, study.runs.len(), &out, quick);
                 }
-                let shard = shard.map(|text| text.parse::<Shard>()).transpose()?;
-                match sweep(&study, &out, &SweepOptions { shard, redo, states: None })? {
-                    Some(table) => report_runs(&table, &out),
-                    None => {
-                        print_line(format_args!("a part of {} in {}", study.name, out.display()));
-                    }
+                let options = SweepOptions { shard: part_of(shard)?, redo, states: None };
+                if let Some(table) = sweep(&study, &out, &options)? {
+                    return report_runs(&study, &table, &out);
                 }
+                print_line(format_args!("a part of {} in {}", study.name, out.display()));
                 Ok(())
             }
-            Self::Budget { config, quantities, from_secs, to_secs, within, cost_secs, out } => {
-                let config = *config;
-                let options =
-                    BudgetOptions { config, quantities, from_secs, to_secs, within, cost_secs };
+            Self::Budget {
+                config,
+                quantities,
+                from_secs,
+                to_secs,
+                within,
+                cost_secs,
+                shard,
+                out,
+            } => {
+                let (config, shard) = (*config, part_of(shard)?);
+                let options = BudgetOptions {
+                    config,
+                    quantities,
+                    from_secs,
+                    to_secs,
+                    within,
+                    cost_secs,
+                    shard,
+                };
                 budget(&options, &out).map(drop)
             }
             Self::Reproduce { figures, out, quick } => {
@@ -257,6 +274,10 @@ impl StudyCommand {
     }
 }
 
+fn part_of(shard: Option<String>) -> Result<Option<Shard>> {
+    shard.map(|text| text.parse()).transpose()
+}
+
 /// Seconds of a time with its unit.
 fn secs_of(text: &str) -> std::result::Result<f64, String> {
     let allowed = || "a time > 0 with its unit, as in 90s, 30min or 2h".to_owned();
@@ -289,8 +310,10 @@ fn list_runs(study: &Path, runs: usize, out: &Path, quick: bool) -> Result<()> {
     Ok(())
 }
 
-fn report_runs(table: &RunsTable, folder: &Path) {
-    let (runs, file, secs) = (table.rows.len(), folder.join("runs.csv"), table.core_secs);
+fn report_runs(study: &Study, table: &RunsTable, folder: &Path) -> Result<()> {
+    write_means(study, table, folder, VERSION)?;
+    let (runs, file) = (table.rows.len(), folder.join("runs.csv"));
+    let secs: f64 = table.wall_secs.iter().sum();
     print_line(format_args!("{runs} runs in {} ({secs:.0} core seconds)", file.display()));
     let ended = table.not_finite();
     if ended > 0 {
@@ -299,6 +322,7 @@ fn report_runs(table: &RunsTable, folder: &Path) {
     if let Some(told) = table.alarms() {
         note_line(format_args!("{told}"));
     }
+    Ok(())
 }
 
 fn stability(

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tries a study on a real Slurm: one node, Debian's packages (apt install slurm-wlm munge), as root.
 # Sixty runs in six tasks; one task is killed in the middle and the study sent again; the merged table
-# must be that of one machine, bit for bit.
+# must be that of one machine, bit for bit. Then a budget in three parts.
 #
 #   cargo build --release && tests/slurm/try.sh
 #
@@ -92,3 +92,17 @@ cat "$out/task-1.log"
 "$SLUMP" sweep "$study" --out "$work/one" 2>/dev/null
 cmp "$out/runs.csv" "$work/one/runs.csv"
 echo "$(($(wc -l < "$out/runs.csv") - 1)) runs, bit for bit those of one machine"
+
+# A budget in three tasks: joined, it is that of one machine but for its clocks.
+ask=(budget --scene cradle --duration 1 --quantity 'max(max_overlap)' --within 1e-4)
+parts=$(sbatch --parsable --array=1-3 --output="$work/part-%a.log" <<JOB
+#!/bin/sh
+exec "$SLUMP" ${ask[@]@Q} --out "$work/parts" --shard "\$SLURM_ARRAY_TASK_ID/3"
+JOB
+)
+ended "$parts"
+"$SLUMP" "${ask[@]}" --out "$work/parts" > /dev/null 2>&1
+"$SLUMP" "${ask[@]}" --out "$work/alone" > /dev/null 2>&1
+cmp <(cut -d, -f1-9 "$work/parts/budget.csv") <(cut -d, -f1-9 "$work/alone/budget.csv")
+[ ! -s "$work/parts/budget.jsonl" ] || { echo "parts were run again" >&2; exit 1; }
+echo "a budget in three parts, that of one machine"

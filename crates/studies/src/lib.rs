@@ -13,6 +13,7 @@ pub mod chart;
 mod figures;
 mod journal;
 mod machine;
+mod means;
 mod paper;
 mod plan;
 pub mod png;
@@ -30,6 +31,7 @@ mod validate;
 
 pub use budget::{BudgetOptions, ErrorBudget, Trust, budget, made as made_budget};
 pub use figures::{figure_names, reproduce};
+pub use means::write_means;
 pub use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };

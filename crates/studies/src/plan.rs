@@ -17,6 +17,9 @@ use crate::input::{MOST_OF_TOML, read_text};
 /// each.
 const MOST_RUNS: usize = 1_000_000;
 
+/// The parameter that tells the starts of a scene apart.
+pub(super) const SEED: &str = "seed";
+
 /// What a study file must be, for messages.
 const FORM: &str = "a study file in TOML with name, base and vary";
 
@@ -70,6 +73,8 @@ pub struct Study {
     pub series: Option<SeriesSettings>,
     /// What is recorded of each run, if anything: below the results, in a folder that has the run's key.
     pub data: Option<DataSettings>,
+    /// The names of what varies, a list of them for what varies together.
+    pub varied: Vec<Vec<String>>,
     /// The runs.
     pub runs: Vec<PlannedRun>,
 }
@@ -116,6 +121,7 @@ impl Study {
                 return Err(Error::value("data.folder", folder.display(), allowed));
             }
         }
+        let varied = file.vary.keys().map(|key| names_of(key)).collect();
         let runs = lay_out(&file)?;
         let mut hasher = blake3::Hasher::new();
         for run in &runs {
@@ -127,6 +133,7 @@ impl Study {
             is_quick_pass,
             series: file.series,
             data: file.data,
+            varied,
             runs,
         })
     }
@@ -197,7 +204,7 @@ struct VariedParameters {
 impl VariedParameters {
     fn read(key: &str, said: &Value) -> Result<Self> {
         let field = format!("vary.{key}");
-        let names: Vec<String> = key.split_whitespace().map(str::to_owned).collect();
+        let names = names_of(key);
         let sets = values(&field, said)?.into_iter().map(|value| match value {
             value if names.len() == 1 => Ok(vec![value]),
             Value::Array(set) if set.len() == names.len() => Ok(set),
@@ -212,6 +219,10 @@ impl VariedParameters {
         }
         Ok(Self { names, values })
     }
+}
+
+fn names_of(key: &str) -> Vec<String> {
+    key.split_whitespace().map(str::to_owned).collect()
 }
 
 fn config_of<'a>(

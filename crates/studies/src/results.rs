@@ -151,9 +151,8 @@ fn first_gap(simulation: &Simulation) -> f64 {
 pub struct RunsTable {
     /// Key, config and result of each run, in the study's order.
     pub rows: Vec<(String, Config, RunResult)>,
-    /// Wall-clock time of all runs together, one after the other, s. Not in the file: it is
-    /// another one every time.
-    pub core_secs: f64,
+    /// Wall-clock time of each run, s. Not in the file: it is another one every time.
+    pub wall_secs: Vec<f64>,
 }
 
 impl RunsTable {
@@ -162,10 +161,10 @@ impl RunsTable {
         finished: &HashMap<String, FinishedCase<SweptRun>>,
     ) -> Result<Self> {
         let mut rows = Vec::with_capacity(study.runs.len());
-        let mut core_secs = 0.0;
+        let mut wall_secs = Vec::with_capacity(study.runs.len());
         for run in &study.runs {
             if let Some(case) = finished.get(&run.key) {
-                core_secs += case.wall_secs;
+                wall_secs.push(case.wall_secs);
                 rows.push((run.key.clone(), run.config.clone(), case.result.outcome.clone()));
             }
         }
@@ -174,7 +173,7 @@ impl RunsTable {
             let allowed = "complete; run the sweep or its missing parts again";
             return Err(Error::value(&study.name, format!("{done} of {all} runs"), allowed));
         }
-        Ok(Self { rows, core_secs })
+        Ok(Self { rows, wall_secs })
     }
 
     /// Runs whose state was no longer finite.

@@ -3,7 +3,7 @@
 //!
 //! A folder of results holds `study.json` (which study it is), journals (results as they come), `states/` (initial
 //! states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are there,
-//! `runs.csv`.
+//! `runs.csv` and `report.json`.
 
 use std::collections::HashSet;
 use std::io::ErrorKind::NotFound;
@@ -13,6 +13,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::journal::{self, Journal};
+use super::means::REPORT;
 use super::results::{RunResult, RunsTable, run_to_end};
 use super::runner::{Case, Runner, Threads};
 use super::series::{self, SERIES, Series};
@@ -49,6 +50,11 @@ impl Shard {
     /// True if the run of that number belongs to this part.
     fn has(self, run: usize) -> bool {
         run % self.count == self.index - 1
+    }
+
+    /// The name of its journal, where that of the whole is `of`.
+    pub(super) fn journal(self, of: &str) -> String {
+        format!("{of}-{}-of-{}", self.index, self.count)
     }
 }
 
@@ -100,10 +106,7 @@ struct Label {
 pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Option<RunsTable>> {
     check_writable("out", folder)?;
     let shared = SharedFolder::of(folder)?;
-    let journal_name = match options.shard {
-        Some(Shard { index, count }) => format!("runs-{index}-of-{count}"),
-        None => "runs".to_owned(),
-    };
+    let journal_name = options.shard.map_or_else(|| "runs".to_owned(), |it| it.journal("runs"));
     let journal_path = journal::path_of(folder, &journal_name);
     claim(study, folder, options.redo, &shared, &journal_path)?;
     let folders = [folder.to_owned()];
@@ -273,9 +276,8 @@ fn claim(
 /// Sweeps out a folder's results, which no other program may be writing. What this program did not write stays.
 fn throw_away(folder: &Path) -> Result<()> {
     let of_series = files_in(&folder.join(SERIES))?;
-    for path in
-        journal::free_journals(folder)?.into_iter().chain([folder.join(TABLE)]).chain(of_series)
-    {
+    let tables = [TABLE, REPORT].map(|name| folder.join(name));
+    for path in journal::free_journals(folder)?.into_iter().chain(tables).chain(of_series) {
         if path.is_file() && is_recognised(&path)? {
             remove_if_there(&path)?;
         }

@@ -227,6 +227,7 @@ fn begin(ui: &Ui, state: &AppState, of: String, config: Config) -> RunBudget {
         to_secs: None,
         within: None,
         cost_secs: COST_SECS,
+        shard: None,
     };
     let told: Arc<Mutex<Option<(Trust, String)>>> = Arc::default();
     let states = state.ensemble.folder();

@@ -57,6 +57,9 @@ fn a_killed_sweep_goes_on_where_it_stopped_and_comes_to_the_same() {
     assert!(again.contains(&format!("{kept} of 24 runs were there")), "{again}");
     assert_eq!(lines(), 24, "no run twice, no half line");
     assert_eq!(runs(&out), in_one_go(folder.path(), &study));
+    let report = json(out.join("report.json"));
+    assert_eq!(report["groups"].as_array().map(Vec::len), Some(24), "{report}");
+    assert_eq!(report["runs"], 24);
 }
 
 #[test]

@@ -288,18 +288,20 @@ mod tests {
             Ok(Ran {
                 values: RunValues { values, failure: None, unsolved: 0.0, run_secs: cost },
                 secs: cost,
+                is_free: false,
             })
         };
         let costs = [1.0].into_iter().chain(variants.iter().map(|variant| variant.cost)).collect();
         let design = Design { variants: &variants, has_seeds: true, time_step_secs: 1e-3 };
         let (runs, ended) =
-            collect(costs, 1, limits, &run, &mut |_| ControlFlow::Continue(())).unwrap();
+            collect(costs, 1, limits, (&run, &|_| Ok(false)), &mut |_| ControlFlow::Continue(()))
+                .unwrap();
         let quantity = "slump".parse().unwrap();
         budget_of(&runs, ended, &design, (0, &quantity), None)
     }
 
     const FREE: Limits =
-        Limits { cost_secs: f64::INFINITY, within: Some(0.05), shows_progress: false };
+        Limits { cost_secs: f64::INFINITY, within: Some(0.05), parts: 1, shows_progress: false };
     const BUDGETS: u64 = 400;
 
     fn share(holds: impl Fn(u64) -> bool) -> f64 {

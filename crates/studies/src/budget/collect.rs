@@ -29,6 +29,8 @@ pub(super) struct Job {
 pub(super) struct Ran {
     pub values: RunValues,
     pub secs: f64,
+    /// True where a part has run it, whose time is not this budget's.
+    pub is_free: bool,
 }
 
 /// How far a budget goes.
@@ -38,6 +40,8 @@ pub(super) struct Limits {
     pub cost_secs: f64,
     /// Half the width of every interval, in the quantity's unit.
     pub within: Option<f64>,
+    /// Parts that there are, of which this is one. Together they have so many times its starts.
+    pub parts: usize,
     /// True where a bar on stderr shows how far it is.
     pub shows_progress: bool,
 }
@@ -144,7 +148,7 @@ impl Runs {
     }
 
     fn spent_secs(&self) -> f64 {
-        self.all.iter().flatten().map(|ran| ran.secs).sum()
+        self.all.iter().flatten().filter(|ran| !ran.is_free).map(|ran| ran.secs).sum()
     }
 
     /// How many times as wide as asked for the widest interval of a series is; 0 where it has to be no narrower.
@@ -166,14 +170,19 @@ pub(super) fn collect(
     costs: Vec<f64>,
     quantities: usize,
     limits: Limits,
-    run: &(impl Fn(Job) -> Result<Ran> + Sync),
+    (run, is_free): (&(impl Fn(Job) -> Result<Ran> + Sync), &impl Fn(Job) -> Result<bool>),
     watch: &mut impl FnMut(&Runs) -> ControlFlow<()>,
 ) -> Result<(Runs, Ended)> {
     let mut runs = Runs::new(costs, quantities);
-    let first = |series: usize| (0..FIRST).map(move |start| Job { series, start });
+    let secs_of = |runs: &Runs, jobs: &[Job]| -> Result<f64> {
+        let secs = |job: &Job| Ok(if is_free(*job)? { 0.0 } else { runs.secs_a_run(job.series) });
+        jobs.iter().map(secs).sum()
+    };
     take(&mut runs, first(0).collect(), limits.shows_progress, run)?;
     runs.within = (0..quantities)
         .map(|quantity| limits.within.unwrap_or_else(|| width(&runs, quantity)))
+        // Intervals narrow with the root of the number of starts.
+        .map(|within| within * (limits.parts as f64).sqrt())
         .collect();
     if (0..quantities).all(|quantity| runs.failure(0, quantity).is_some()) {
         return Ok((runs, Ended::Failed));
@@ -183,15 +192,20 @@ pub(super) fn collect(
             return Ok((runs, Ended::Stopped));
         }
         let left = limits.cost_secs - runs.spent_secs();
-        let mut jobs: Vec<Job> = begun(&runs, left).into_iter().flat_map(first).collect();
+        let mut jobs = begun(&runs, left, &secs_of)?;
         if jobs.is_empty() {
-            match widened(&runs, left) {
+            match widened(&runs, left, &secs_of)? {
                 Ok(more) => jobs = more,
                 Err(ended) => return Ok((runs, ended)),
             }
         }
         take(&mut runs, jobs, limits.shows_progress, run)?;
     }
+}
+
+/// The first starts of a series.
+fn first(series: usize) -> impl Iterator<Item = Job> {
+    (0..FIRST).map(move |start| Job { series, start })
 }
 
 /// The width to come to where none is asked for, rounded to a digit.
@@ -203,21 +217,32 @@ fn width(runs: &Runs, quantity: usize) -> f64 {
     format!("{rough:.0e}").parse().unwrap_or(rough)
 }
 
-/// Series without a run that fit into what is left of the time, the cheapest first.
-fn begun(runs: &Runs, left_secs: f64) -> Vec<usize> {
+/// First starts of the series without a run that fit into what is left of the time, the cheapest first.
+fn begun(
+    runs: &Runs,
+    left_secs: f64,
+    secs_of: &impl Fn(&Runs, &[Job]) -> Result<f64>,
+) -> Result<Vec<Job>> {
     let mut new: Vec<usize> =
         (0..runs.all.len()).filter(|&series| runs.all[series].is_empty()).collect();
     new.sort_by(|one, other| runs.costs[*one].total_cmp(&runs.costs[*other]));
-    let mut left = left_secs;
-    new.retain(|&series| {
-        left -= FIRST as f64 * runs.secs_a_run(series);
-        left >= 0.0
-    });
-    new
+    let (mut left, mut jobs) = (left_secs, Vec::new());
+    for series in new {
+        let more: Vec<Job> = first(series).collect();
+        left -= secs_of(runs, &more)?;
+        if left >= 0.0 {
+            jobs.extend(more);
+        }
+    }
+    Ok(jobs)
 }
 
 /// More starts for the series with the widest interval that is affordable; none where all are narrow, or none is.
-fn widened(runs: &Runs, left_secs: f64) -> std::result::Result<Vec<Job>, Ended> {
+fn widened(
+    runs: &Runs,
+    left_secs: f64,
+    secs_of: &impl Fn(&Runs, &[Job]) -> Result<f64>,
+) -> Result<std::result::Result<Vec<Job>, Ended>> {
     let begun = (0..runs.all.len()).filter(|&series| !runs.all[series].is_empty());
     let mut wide: Vec<(f64, usize)> = begun
         .map(|series| (runs.excess(series), series))
@@ -225,7 +250,7 @@ fn widened(runs: &Runs, left_secs: f64) -> std::result::Result<Vec<Job>, Ended> 
         .collect();
     if wide.is_empty() {
         let is_whole = runs.all.iter().all(|series| !series.is_empty());
-        return Err(if is_whole { Ended::Within } else { Ended::Cost });
+        return Ok(Err(if is_whole { Ended::Within } else { Ended::Cost }));
     }
     wide.sort_by(|one, other| other.0.total_cmp(&one.0));
     for (excess, series) in wide {
@@ -240,13 +265,13 @@ fn widened(runs: &Runs, left_secs: f64) -> std::result::Result<Vec<Job>, Ended> 
             let to = count + more;
             let jobs: Vec<Job> =
                 missing(series, to).chain(missing(0, if series == 0 { 0 } else { to })).collect();
-            if jobs.iter().map(|job| runs.secs_a_run(job.series)).sum::<f64>() <= left_secs {
-                return Ok(jobs);
+            if secs_of(runs, &jobs)? <= left_secs {
+                return Ok(Ok(jobs));
             }
             more /= 2;
         }
     }
-    Err(Ended::Cost)
+    Ok(Err(Ended::Cost))
 }
 
 /// Computes runs on all cores, the longest first, and puts each in its place.

@@ -11,6 +11,7 @@ mod report;
 mod starts;
 mod words;
 
+use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -24,10 +25,12 @@ use self::quantity::{Quantity, Window};
 use self::starts::{RunValues, Starts, run, said_of};
 use crate::config::{Config, joined};
 use crate::error::{self, Error, Result};
-use crate::output::{check_writable, print_line, print_text};
-use crate::runner::Runner;
+use crate::journal::{self, Journal};
+use crate::output::{check_writable, note_line, print_line, print_text};
+use crate::runner::{FinishedCase, Runner};
 use crate::scene::Scene;
 use crate::sim::Settings;
+use crate::sweep::Shard;
 
 /// What a budget is asked for.
 #[derive(Clone, Debug)]
@@ -45,6 +48,8 @@ pub struct BudgetOptions {
     pub within: Option<f64>,
     /// Time to take on all cores, s.
     pub cost_secs: f64,
+    /// The part of the starts to run, for another machine; all of them where there is none.
+    pub shard: Option<Shard>,
 }
 
 /// A budget of some quantities of a scene.
@@ -80,11 +85,13 @@ impl ErrorBudget {
     }
 }
 
+/// Its runs as they come.
+const JOURNAL: &str = "budget";
 /// The quantity of what asks for none.
 const QUANTITY: &str = "slump";
 
 /// Makes an error budget in `folder`: `report.md`, a picture, `budget.csv` and `budget.json`. The same call goes on where
-/// one was stopped.
+/// one was stopped. What parts of it have run there costs it nothing; a part leaves its runs alone.
 ///
 /// # Errors
 /// Names the quantity, the time or the setting that is not allowed, or the folder that cannot be written; and where a pile
@@ -92,6 +99,10 @@ const QUANTITY: &str = "slump";
 pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     let go_on = |_: &ErrorBudget| ControlFlow::Continue(());
     let budget = made_showing(true, options, folder, &folder.join("states"), go_on)?;
+    if options.shard.is_some() {
+        print_line(format_args!("a part of the budget in {}", folder.display()));
+        return Ok(budget);
+    }
     report::write(&budget, folder)?;
     for one in &budget.quantities {
         print_text(format!("{}\n\n", one.answer));
@@ -138,23 +149,34 @@ fn made_showing(
     let starts = Starts::of(config, states)?;
     let window = window_of(options, &starts)?;
     let variants = variants(&starts.scene, starts.pile.as_ref(), starts.resizes());
-    let runner: Runner<RunValues> = Runner::open("budget", folder, "budget")?;
+    let (runner, others) = runner_of(options.shard, folder)?;
     let key = |start, variant| starts.key(start, variant, &quantities, window);
     let ran = |key: &str, scene: &dyn Fn() -> Result<Scene>| -> Result<Ran> {
         let finished = runner.result(key, || run(&scene()?, &quantities, window))?;
-        Ok(Ran { values: finished.result, secs: finished.wall_secs })
+        let is_free = others.contains(key);
+        Ok(Ran { values: finished.result, secs: finished.wall_secs, is_free })
     };
     let itself = match starts.pile {
-        Some(_) => Some(ran(&key(None, None)?, &|| starts.itself())?),
-        None => None,
+        Some(_) if options.shard.is_none() => Some(ran(&key(None, None)?, &|| starts.itself())?),
+        _ => None,
     };
-    let compute = |Job { series, start }: Job| {
-        let (start, variant) = (start as u64 + 1, series.checked_sub(1).map(|one| &variants[one]));
+    // Parts deal starts out among themselves, so that they need not know of each other.
+    let (part, parts) = options.shard.map_or((1, 1), |shard| (shard.index, shard.count));
+    let of_job = |Job { series, start }: Job| {
+        let variant = series.checked_sub(1).map(|one| &variants[one]);
+        ((start * parts + part) as u64, variant)
+    };
+    let compute = |job: Job| {
+        let (start, variant) = of_job(job);
         ran(&key(Some(start), variant)?, &|| starts.scene(start, variant))
+    };
+    let is_free = |job: Job| -> Result<bool> {
+        let (start, variant) = of_job(job);
+        Ok(!others.is_empty() && others.contains(&key(Some(start), variant)?))
     };
     let costs = [1.0].into_iter().chain(variants.iter().map(|variant| variant.cost)).collect();
     let cost_secs = cost_secs * rayon::current_num_threads() as f64;
-    let limits = Limits { cost_secs, within: *within, shows_progress };
+    let limits = Limits { cost_secs, within: *within, parts, shows_progress };
     let settings = starts.scene.settings();
     let design = Design {
         variants: &variants,
@@ -181,10 +203,36 @@ fn made_showing(
             quantities: quantities.iter().enumerate().map(of_quantity).collect(),
         }
     };
-    let (runs, ended) = collect(costs, quantities.len(), limits, &compute, &mut |runs| {
-        watch(&of(runs, Ended::Stopped))
-    })?;
+    let (runs, ended) =
+        collect(costs, quantities.len(), limits, (&compute, &is_free), &mut |runs| {
+            watch(&of(runs, Ended::Stopped))
+        })?;
     Ok(of(&runs, ended))
+}
+
+/// A runner that knows the runs of all parts that lie in a folder, and the keys of those that are not its own.
+fn runner_of(shard: Option<Shard>, folder: &Path) -> Result<(Runner<RunValues>, HashSet<String>)> {
+    let name = shard.map_or_else(|| JOURNAL.to_owned(), |shard| shard.journal(JOURNAL));
+    let journal = Journal::open(folder, &name)?;
+    let own = journal::path_of(folder, &name);
+    let (mut finished, mut others) = (HashMap::new(), HashSet::new());
+    // Its own last: a run that two of them have is its own.
+    let mut paths = journal::journals(&[folder.to_owned()])?;
+    paths.sort_by_key(|path| *path == own);
+    for path in paths {
+        for case in journal::read::<FinishedCase<RunValues>>(&path)? {
+            if path == own {
+                others.remove(&case.key);
+            } else {
+                others.insert(case.key.clone());
+            }
+            finished.insert(case.key.clone(), case);
+        }
+    }
+    if !finished.is_empty() {
+        note_line(format_args!("{JOURNAL}: {} runs were there", finished.len()));
+    }
+    Ok((Runner::new(JOURNAL, journal, finished), others))
 }
 
 fn command_of(options: &BudgetOptions, settings: &Settings) -> Result<String> {

@@ -134,7 +134,7 @@ fn closing(studies: &StudyRunner) -> String {
             text,
             "| {name} | {} | {:.0} | {:.2} % | {residual:.1e} | {} |",
             table.rows.len(),
-            table.core_secs,
+            table.wall_secs.iter().sum::<f64>(),
             100.0 * unsolved as f64 / steps.max(1) as f64,
             table.not_finite()
         );

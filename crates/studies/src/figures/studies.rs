@@ -242,7 +242,7 @@ mod tests {
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";
         let study = Study::parse(text, "pile.toml".as_ref(), true).expect("a study");
         let rows = results.iter().map(|&result| (String::new(), Config::default(), result.clone()));
-        let table = RunsTable { rows: rows.collect(), core_secs: 0.0 };
+        let table = RunsTable { rows: rows.collect(), wall_secs: vec![0.0; results.len()] };
         studies.finished.insert("pile", (study, table));
         let mut claims = [Claim::new("it falls", "p = 0.001", Verdict::Holds)];
         studies.qualify(&["pile"], &mut claims);

@@ -1,0 +1,219 @@
+//! `report.json` of a sweep: what its runs come to in the mean over their starts, and how much each choice changes that
+//! from the same starts; with the program, machine, day and command that it is of.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::Study;
+use super::machine::Machine;
+use super::plan::SEED;
+use super::results::{RunResult, RunsTable, Status};
+use super::statistics::mean;
+use crate::error::{Error, Result};
+use crate::output::write_file;
+
+pub(super) const REPORT: &str = "report.json";
+
+#[derive(Serialize)]
+struct SweepReport<'a> {
+    program: &'static str,
+    version: &'a str,
+    processor: String,
+    cores: usize,
+    date: String,
+    command: String,
+    study: &'a str,
+    runs: usize,
+    core_secs: f64,
+    groups: Vec<Group>,
+}
+
+/// Runs that differ in their start alone.
+#[derive(Default, Serialize)]
+struct Group {
+    /// What varies between groups.
+    settings: Map<String, Value>,
+    /// Runs that have a number: those that came to an end and lost no grain.
+    starts: usize,
+    /// Those that did not.
+    spoilt: usize,
+    /// Mean slump, and the ends of its 95 % interval; `null` where one start proves nothing.
+    slump: [f64; 3],
+    /// The same of this slump less that under the first value of a list, all else alike, over the starts of both.
+    less_first: BTreeMap<String, [f64; 3]>,
+    /// Share of the steps that were not solved, as asked or by falling back.
+    unsolved: f64,
+    /// The largest bound that a step had on the velocities' error, m/s.
+    largest_velocity_error: f64,
+    /// The largest of the runs' mean overlaps, d.
+    mean_overlap: f64,
+    /// Time of a run in the mean, s.
+    secs: f64,
+}
+
+/// Writes the report of a study whose runs are all there. `version` is the program's.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &str) -> Result<()> {
+    let Machine { processor, cores, date, command, .. } = Machine::this()?;
+    let report = SweepReport {
+        program: "slump",
+        version,
+        processor,
+        cores,
+        date,
+        command,
+        study: &study.name,
+        runs: table.rows.len(),
+        core_secs: table.wall_secs.iter().sum(),
+        groups: groups(study, table)?,
+    };
+    let path = folder.join(REPORT);
+    let json = serde_json::to_string_pretty(&report).map_err(|error| Error::file(&path, error))?;
+    write_file(&path, format!("{json}\n").as_bytes())
+}
+
+struct Run<'a> {
+    seed: Option<u64>,
+    result: &'a RunResult,
+    secs: f64,
+}
+
+fn groups(study: &Study, table: &RunsTable) -> Result<Vec<Group>> {
+    let varied = || study.varied.iter().flatten().filter(|name| *name != SEED);
+    let mut order: Vec<Vec<Value>> = Vec::new();
+    let mut runs: HashMap<String, Vec<Run<'_>>> = HashMap::new();
+    for ((key, config, result), secs) in table.rows.iter().zip(&table.wall_secs) {
+        let settings = serde_json::to_value(config)
+            .map_err(|error| Error::value("config", key, error.to_string()))?;
+        let values: Vec<Value> = varied().map(|name| settings[name.as_str()].clone()).collect();
+        let group = runs.entry(words(&values)).or_default();
+        if group.is_empty() {
+            order.push(values);
+        }
+        group.push(Run { seed: config.source.seed, result, secs: *secs });
+    }
+    let is_sound = |result: &RunResult| result.status == Status::Done && result.lost_grains == 0;
+    let slumps = |values: &[Value]| -> Vec<(Option<u64>, f64)> {
+        let group = runs.get(&words(values)).into_iter().flatten();
+        let sound = group.filter(|run| is_sound(run.result));
+        sound.map(|run| (run.seed, run.result.slump)).collect()
+    };
+    let interval = |values: &[f64]| {
+        let mean = mean(values);
+        [mean.mean, mean.low, mean.high]
+    };
+    let group = |values: &Vec<Value>| {
+        let here = slumps(values);
+        let mut less_first = BTreeMap::new();
+        let mut at = 0;
+        for list in &study.varied {
+            let names: Vec<&str> =
+                list.iter().map(String::as_str).filter(|name| *name != SEED).collect();
+            let (begin, end) = (at, at + names.len());
+            at = end;
+            let mut first = values.clone();
+            first[begin..end].clone_from_slice(&order[0][begin..end]);
+            if first == *values {
+                continue;
+            }
+            let there: HashMap<_, _> = slumps(&first).into_iter().collect();
+            let pairs = here.iter().filter_map(|(seed, slump)| Some(slump - there.get(seed)?));
+            let pairs: Vec<f64> = pairs.collect();
+            if !pairs.is_empty() {
+                less_first.insert(names.join(" "), interval(&pairs));
+            }
+        }
+        let all = &runs[&words(values)];
+        let tallies = || all.iter().map(|run| &run.result.tally);
+        let steps: u64 = tallies().map(|tally| tally.steps).sum();
+        let unsolved: u64 = tallies()
+            .map(|tally| {
+                tally.unconverged_steps - tally.fallback_steps.min(tally.unconverged_steps)
+            })
+            .sum();
+        Group {
+            settings: varied().cloned().zip(values.iter().cloned()).collect(),
+            starts: here.len(),
+            spoilt: all.len() - here.len(),
+            slump: interval(&here.iter().map(|(_, slump)| *slump).collect::<Vec<_>>()),
+            less_first,
+            unsolved: unsolved as f64 / steps.max(1) as f64,
+            largest_velocity_error: tallies()
+                .map(|tally| tally.largest_velocity_error)
+                .fold(0.0, f64::max),
+            mean_overlap: tallies().map(|tally| tally.mean_overlap).fold(0.0, f64::max),
+            secs: all.iter().map(|run| run.secs).sum::<f64>() / all.len() as f64,
+        }
+    };
+    Ok(order.iter().map(group).collect())
+}
+
+fn words(values: &[Value]) -> String {
+    Value::from(values.to_vec()).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A study of the cradle without runs of its own, and results made up for it.
+    fn reported(vary: &str, slump: impl Fn(usize) -> f64, spoil: Option<usize>) -> Vec<Group> {
+        let text = format!("name = \"made\"\n[base]\nscene = \"pile\"\n[vary]\n{vary}");
+        let study = Study::parse(&text, "made.toml".as_ref(), false).expect("a study");
+        let rows = study.runs.iter().enumerate().map(|(number, run)| {
+            let mut result = RunResult::of_slump(slump(number));
+            result.lost_grains = u32::from(spoil == Some(number));
+            (run.key.clone(), run.config.clone(), result)
+        });
+        let table = RunsTable { rows: rows.collect(), wall_secs: vec![2.0; study.runs.len()] };
+        groups(&study, &table).expect("groups")
+    }
+
+    #[test]
+    fn means_are_over_seeds_and_differences_are_taken_seed_by_seed_from_the_first_value() {
+        // Seeds scatter by 0.1, and Δt adds 0.02 to each to within 0.001: seen pair by pair alone.
+        let vary = "bond = [0, 20]\ndt = [1e-3, 5e-3]\nseed = [4, 5, 6]\n";
+        let slump = |run: usize| {
+            let (seed, dt, bond) = (run % 3, run / 3 % 2, run / 6);
+            0.1 * seed as f64 + 0.02 * dt as f64 + 0.3 * bond as f64 + 0.001 * (dt * seed) as f64
+        };
+        let groups = reported(vary, slump, None);
+        assert_eq!(groups.len(), 4);
+        let [mean, low, high] = groups[0].slump;
+        // Student's t(0.975; 2) = 4.302653, standard error 0.1/√3.
+        let half = 4.302_653 * 0.1 / 3f64.sqrt();
+        assert!((mean - 0.1).abs() < 1e-12 && (high - mean - half).abs() < 1e-6 && low < 0.0);
+        assert!(groups[0].less_first.is_empty());
+        let [mean, low, high] = groups[3].less_first["dt"];
+        assert!((mean - 0.021).abs() < 1e-12 && low > 0.018 && high < 0.024, "{low} {high}");
+        let [mean, ..] = groups[3].less_first["bond"];
+        assert!((mean - 0.3).abs() < 1e-12);
+        assert_eq!(groups[3].settings["dt"], 5e-3);
+        assert_eq!((groups[3].starts, groups[3].secs), (3, 2.0));
+    }
+
+    #[test]
+    fn a_run_that_lost_a_grain_has_no_part_in_means_and_pairs() {
+        let vary = "dt = [1e-3, 5e-3]\nseed = [4, 5, 6]\n";
+        let slump = |run: usize| if run == 1 { 1e3 } else { run as f64 };
+        let groups = reported(vary, slump, Some(1));
+        assert_eq!((groups[0].starts, groups[0].spoilt, groups[0].slump[0]), (2, 1, 1.0));
+        assert_eq!(groups[1].starts, 3);
+        assert_eq!(groups[1].less_first["dt"][0], 3.0);
+    }
+
+    #[test]
+    fn choices_that_go_with_a_seed_are_told_apart_and_one_start_has_no_interval() {
+        let vary = "\"grains box-width seed\" = [[138, 16, 4], [138, 16, 5], [500, 30, 6]]\n";
+        let groups = reported(vary, |run| run as f64, None);
+        assert_eq!(groups.iter().map(|group| group.starts).collect::<Vec<_>>(), [2, 1]);
+        assert!(groups[1].slump[1].is_infinite() && groups[1].less_first.is_empty());
+        let json = serde_json::to_value(&groups[1]).expect("JSON");
+        assert!(json["slump"][1].is_null(), "{json}");
+    }
+}
