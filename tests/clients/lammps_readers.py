@@ -26,7 +26,26 @@ def main(recording):
         metre = 1e10
         assert numpy.allclose(atoms.positions[:, :2], metre * places, rtol=1e-12, atol=1e-3)
         assert list(atoms.symbols) == [ELEMENTS[kind] for kind in grains["kind"]]
+    if has_images(dump):
+        check_images(dump, every, wanted)
     print(f"MDAnalysis {MDAnalysis.__version__} and ASE {ase.__version__} read {recording}")
+
+
+def has_images(dump):
+    with open(dump) as file:
+        return any(line.endswith(" ix iy iz\n") for line in file)
+
+
+def check_images(dump, every, wanted):
+    """Images of a cell whose borders wrap: with them a reader finds each grain's whole way."""
+    universe = MDAnalysis.Universe(dump, format="LAMMPSDUMP", topology_format="LAMMPSDUMP", unwrap_images=True)
+    ways = 0
+    for moment, step in zip(universe.trajectory, wanted["step"]):
+        grains = every[every["step"] == step]
+        ways = max(ways, (grains["x_unwrapped"] - grains["x"]).abs().max())
+        found, places = (it - it[0] for it in (moment.positions[:, 0], grains["x_unwrapped"].to_numpy()))
+        assert numpy.allclose(found, places, rtol=1e-6, atol=1e-6)
+    assert ways > 0, "no grain left its cell"
 
 
 main(sys.argv[1])

@@ -44,6 +44,8 @@ record() {
 record pile --bond 20 --dt 1e-3 --duration 0.3 --data-every 0.05
 record bonds --stepper range --bond 20 --dt 1e-3 --duration 0.02 --data-every 0.01
 record walls --scene assets/scenes/hourglass.toml --duration 0.1 --data-every 0.02
+# Grains that leave a cell whose borders wrap.
+record periodic --scene shear --dt 2e-3 --duration 1 --data-every 0.25
 
 for run in pile bonds walls; do
     "$python" "$here/tables.py" "$out/$run"
@@ -51,6 +53,8 @@ for run in pile bonds walls; do
     "$python" "$here/lammps_readers.py" "$out/$run"
     [ -n "$fast" ] || "$python" "$here/ovito_files.py" "$out/$run"
 done
+
+"$python" "$here/lammps_readers.py" "$out/periodic"
 
 if [ -z "$fast" ] && command -v pvpython >/dev/null; then
     # Debian's ParaView draws on a display alone.

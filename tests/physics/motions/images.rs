@@ -284,6 +284,23 @@ fn recordings_say_where_the_borders_are_and_are_a_start() {
         };
         let places: Vec<DVec2> = rows.lines().skip(1).map(of_row).collect();
         assert!(places.starts_with(run.places()), "{name}");
+        let (columns, rows) = rows.split_once('\n').expect("rows");
+        assert_eq!(columns.ends_with(" ix iy iz"), name != "sheared", "{name}: {columns}");
+        if name != "sheared" {
+            let width = cell.periods().map(|period| period.unwrap_or(0.0));
+            let moment = run.moment();
+            let mut gone = 0;
+            for (row, grain) in rows.lines().zip(&moment.grains) {
+                let images: Vec<f64> = row.rsplit(' ').take(3).map(|it| number(Some(it))).collect();
+                let away = DVec2::new(images[2] * width[0], images[1] * width[1]);
+                assert!(
+                    (grain.position + away - grain.unwrapped).length() < 1e-12,
+                    "{name}: {row}"
+                );
+                gone += usize::from(away != DVec2::ZERO);
+            }
+            assert!(gone > 0, "{name}: no grain left its cell");
+        }
         let manifest = std::fs::read_to_string(place.join("data.json")).expect("a manifest");
         assert!(manifest.contains("periodic"), "{name}: {manifest}");
         let read = read_grains(&place, None).expect("grains").grains;

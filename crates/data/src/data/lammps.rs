@@ -20,7 +20,7 @@ use super::recording_folder::{make_folder, remove};
 use super::table::{Column, Table, Values};
 use crate::error::{Error, Result};
 use crate::output::GrowingFile;
-use crate::sim::{Moment, OtherBody};
+use crate::sim::{GrainState, Moment, OtherBody};
 
 pub(super) const FOLDER: &str = "ovito";
 /// Those of grains, contacts and walls.
@@ -205,6 +205,7 @@ fn dump(
     rows: impl ExactSizeIterator<Item = usize>,
 ) -> FrameText {
     let columns = columns(table, first);
+    let images = if label == ATOMS { images(&frame.moment) } else { None };
     let mut head = head(&frame.moment, label, rows.len());
     for (name, _) in &columns {
         head.extend([" ", name]);
@@ -212,7 +213,7 @@ fn dump(
             head.extend([" ", along_z]);
         }
     }
-    head.push('\n');
+    head.push_str(if images.is_some() { " ix iy iz\n" } else { "\n" });
     let mut text = String::new();
     for row in rows {
         for (place, (name, column)) in columns.iter().enumerate() {
@@ -223,6 +224,10 @@ fn dump(
             if along_z(label, name).is_some() {
                 text.push_str(" 0.0");
             }
+        }
+        if let Some(images) = &images {
+            let [x, y] = images.get(row).copied().unwrap_or_default();
+            let _ = write!(text, " {x} {y} 0");
         }
         text.push('\n');
     }
@@ -236,6 +241,21 @@ fn along_z(label: &str, name: &str) -> Option<&'static str> {
         "vy" if label == ATOMS => Some("vz"),
         _ => None,
     }
+}
+
+/// In which image of the cell each grain is, counted along x and y from the one that it started in. None without borders that wrap, and none where they shear: there its way is not so many cells.
+fn images(moment: &Moment) -> Option<Vec<[i64; 2]>> {
+    let cell = moment.surroundings.periodic.filter(|cell| cell.shear_rate == 0.0)?;
+    let periods = cell.periods();
+    let of = |grain: &GrainState| {
+        let ways = (grain.unwrapped - grain.position).to_array();
+        let image = |(way, period): (f64, Option<f64>)| {
+            period.map_or(0, |period| (way / period).round() as i64)
+        };
+        let [x, y] = [(ways[0], periods[0]), (ways[1], periods[1])];
+        [image(x), image(y)]
+    };
+    Some(moment.grains.iter().map(of).collect())
 }
 
 fn columns<'a>(
