@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::scene::Scene;
-use crate::sim::{Alarm, FractureWork, Observables, SweepElasticity, Tally, hash_of_bits};
+use crate::sim::{Alarm, FractureWork, Observables, Tally, hash_of_bits};
 use crate::study::Recorded;
 
 /// `manifest.json`.
@@ -98,9 +98,6 @@ pub(super) struct RunEntry {
     /// What it takes to break the bond of two such grains, where the contact law says so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fracture_work: Option<FractureWork>,
-    /// What the mean number of sweeps a step made of the pile at its end, where steps are swept.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sweep_elasticity: Option<SweepElasticity>,
 }
 
 /// A moment of a run.
@@ -215,7 +212,6 @@ impl RunEntry {
             critical_time_step_secs: start.critical_time_step_secs(),
             contact_time_secs: start.contact_time_secs(),
             fracture_work: start.fracture_work(),
-            sweep_elasticity: None,
         })
     }
 
@@ -226,12 +222,9 @@ impl RunEntry {
         let settings = simulation.settings();
         let entry = |alarm: &Alarm| AlarmEntry { alarm: *alarm, message: alarm.message(settings) };
         let alarms = simulation.alarms().iter().map(entry).collect();
-        let sweeps = tally.sweeps as f64 / tally.steps.max(1) as f64;
-        let sweep_elasticity = simulation.sweep_elasticity(sweeps);
         let (tally, last_state) = (*tally, simulation.snapshot().state_hash());
         let so_far = self.clone();
-        *self =
-            Self { ended, step, time_secs, last_state, tally, alarms, sweep_elasticity, ..so_far };
+        *self = Self { ended, step, time_secs, last_state, tally, alarms, ..so_far };
     }
 }
 

@@ -344,9 +344,8 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
 /// Says on stderr which method `auto` took at last.
 fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
     if scene.stepper.uses_method() && scene.solver.method == Method::Auto {
-        let contacts = simulation.contacts_together();
+        let contacts = simulation.contacts().contacts().len();
         let name = simulation.picked_method().name();
-        let of = if scene.solver.islands { " of the largest island" } else { "" };
-        note_line(format_args!("auto took {name} for {contacts} contacts{of}"));
+        note_line(format_args!("auto took {name} for {contacts} contacts"));
     }
 }

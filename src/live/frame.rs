@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::stored_moments::StoredMoment;
 use super::{Controls, Curve, LiveStart, LoadingProgress, PastRun, WorldHistory};
-use crate::sim::{Alarm, AlarmKind, FractureWork, Snapshot, Surroundings, SweepElasticity};
+use crate::sim::{Alarm, AlarmKind, FractureWork, Snapshot, Surroundings};
 use crate::solver::Method;
 use crate::world::Gravity;
 
@@ -79,8 +79,6 @@ pub struct WorldFrame {
     pub critical_time_step_secs: Option<f64>,
     /// How long two grains of the mean mass that meet push each other, s, where contacts are springs.
     pub contact_time_secs: Option<f64>,
-    /// What the sweeps of its last step make of the pile, where steps are swept.
-    pub sweep_elasticity: Option<SweepElasticity>,
     /// What it takes to break a bond slowly, where the law says so.
     pub fracture_work: Option<FractureWork>,
     /// What went wrong up to this moment, and what is most likely to help.
@@ -143,7 +141,6 @@ impl WorldFrame {
             Arc::new(snapshot)
         };
         let snapshot = stored.map_or_else(present, |moment| Arc::clone(&moment.snapshot));
-        let sweeps = f64::from(snapshot.observables.sweeps);
         Self {
             snapshot,
             controls: controls.unwrap_or_else(|| Controls::of(simulation)),
@@ -162,7 +159,6 @@ impl WorldFrame {
             picked_method: simulation.picked_method(),
             critical_time_step_secs: simulation.critical_time_step_secs(),
             contact_time_secs: simulation.contact_time_secs(),
-            sweep_elasticity: simulation.sweep_elasticity(sweeps),
             fracture_work: simulation.fracture_work(),
             alarms: alarms(world),
             failure: world.failure.clone(),

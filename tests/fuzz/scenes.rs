@@ -81,7 +81,6 @@ fn solver(u: &mut Unstructured<'_>) -> Result<SolverSettings> {
         friction_model: *u.choose(FrictionModel::ALL)?,
         model_solves: *u.choose(&[1, 1, 1, 3])?,
         fallback: *u.choose(Fallback::ALL)?,
-        islands: u.ratio(1, 4)?,
     })
 }
 

@@ -28,7 +28,9 @@ impl Machine {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes);
         hasher.update(processor.as_bytes());
-        let arguments = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
+        // What is no text stands there as far as it is one.
+        let arguments = std::env::args_os().skip(1).map(|it| it.to_string_lossy().into_owned());
+        let arguments = arguments.collect::<Vec<_>>().join(" ");
         Ok(Self {
             processor,
             cores: std::thread::available_parallelism().map_or(1, usize::from),

@@ -65,17 +65,13 @@ fn solvers() -> Vec<SolverSettings> {
             (StopTest::VelocityError, 1e-4),
         ],
     ) {
-        for islands in [false, true] {
-            let max_sweeps = 300;
-            let solver = SolverSettings {
-                stop,
-                tolerance,
-                friction_model: model,
-                islands,
-                ..SolverSettings::to_residual(method, tolerance, max_sweeps)
-            };
-            solvers.extend(solver.validate().is_ok().then_some(solver));
-        }
+        let solver = SolverSettings {
+            stop,
+            tolerance,
+            friction_model: model,
+            ..SolverSettings::to_residual(method, tolerance, 300)
+        };
+        solvers.extend(solver.validate().is_ok().then_some(solver));
     }
     solvers
 }

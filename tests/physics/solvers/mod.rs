@@ -2,6 +2,5 @@
 
 mod converged;
 mod detection;
-mod islands;
 mod methods;
 mod solver_properties;

@@ -25,6 +25,6 @@ pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;
 pub use law::ContactLaw;
-pub use numbering::{JoinedGrains, Numbering, Other, most_contacts_joined};
+pub use numbering::{Numbering, Other};
 pub(crate) use too_close::check_distances;
 pub(crate) use transmitted::Transmitted;

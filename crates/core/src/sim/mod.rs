@@ -24,7 +24,6 @@ pub use alarm::{Alarm, AlarmKind};
 pub use edits::{Edit, NEW_GRAIN_DIAMETERS, place_of};
 pub use force_sums::{ForceSums, PairSum};
 pub use moment::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
-pub use numbers::{SweepElasticity, diffusion_of_sweep};
 pub use observables::{Beside, Observables, QUANTITIES, Quantity};
 pub use pull::Pull;
 pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};

@@ -75,7 +75,7 @@ pub struct Stage<'a, M: Model> {
     pub(crate) state: &'a mut State,
     pub(crate) problem: &'a mut StepProblem<M>,
     pub(crate) part: &'a mut StepProblem<M>,
-    pub(crate) memory: &'a mut Memory<M>,
+    pub(crate) memory: &'a mut Memory,
 }
 
 impl<'a, M: Model> Stage<'a, M> {

@@ -192,11 +192,6 @@ impl Method {
         &METHODS[self as usize]
     }
 
-    /// True where it can be had island by island: tiles that threads share are laid over all of a problem.
-    pub(super) fn takes_islands(self) -> bool {
-        self.info().order != MethodOrder::Always(Ordering::Coloured)
-    }
-
     /// True where the order of the settings tells the method in which order to sweep.
     pub fn sweeps_in_order(self) -> bool {
         self.info().order == MethodOrder::OfSettings

@@ -26,7 +26,7 @@ pub use method::{METHODS, Method, MethodInfo, MethodOrder, Ordering};
 pub(crate) use methods::picked;
 #[doc(hidden)]
 pub use methods::sweep;
-pub use methods::{BodySystem, ContactSystem, ScaledVector, SolveReport};
+pub use methods::{BodySystem, ContactSystem, Memory, ScaledVector, SolveReport};
 pub(crate) use model::cone_of;
 pub use model::{ModelParts, Slot, Slots};
 pub use problem::{
@@ -35,4 +35,4 @@ pub use problem::{
     VelocityError, for_each_row, measure, relative_velocities, residual, velocity_error, worst,
 };
 pub use settings::{Fallback, FrictionModel, SolverChanges, SolverSettings, StopTest};
-pub use solve::{Memory, solve};
+pub use solve::solve;

@@ -1,8 +1,8 @@
 //! Which model a step is compiled for, and where its problems are kept.
 
 use super::kinematics::{Line, Model, Plane, ShearedPlane, SmoothPlane, SpinningPlane};
+use super::methods::Memory;
 use super::problem::StepProblem;
-use super::solve::Memory;
 use crate::world::{FrictionCone, Parameters, Periodic, Physics};
 
 /// What a model computes.
@@ -71,7 +71,7 @@ pub struct Slot<M: Model> {
     /// Room for some of its rows, to be solved by themselves.
     pub part: StepProblem<M>,
     /// What the methods keep.
-    pub memory: Memory<M>,
+    pub memory: Memory,
 }
 
 /// A slot for each model; those that a scene never uses hold no memory.

@@ -148,10 +148,6 @@ settings! {
             needs: Needs::Friction,
             control: shown("Falls back on", "What becomes of a step that is not solved under Coulomb's law."),
         }
-        #[serde(default, skip_serializing_if = "is_default")]
-        islands: bool = false, "islands",
-            "Whether grains that no contact joins to the others are solved by themselves, and fall back \
-             by themselves: pays where a scene has several heaps", {}
     }
 }
 
@@ -196,7 +192,6 @@ impl SolverSettings {
             friction_model: FrictionModel::Coulomb,
             model_solves: 1,
             fallback: Fallback::None,
-            islands: false,
         }
     }
 
@@ -207,12 +202,7 @@ impl SolverSettings {
     /// Names the field, its value and what it may be.
     pub fn validate(&self) -> Result<()> {
         self.validate_each()?;
-        let Self { method, islands, .. } = *self;
-        let friction_model = self.model(false);
-        if islands && !method.takes_islands() {
-            let allowed = format!("false where solver is {method}, which works by tiles");
-            return Err(Error::value("islands", islands, allowed));
-        }
+        let (method, friction_model) = (self.method, self.model(false));
         if friction_model != FrictionModel::Coulomb && !method.info().takes_models {
             let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
             let takers: Vec<_> = takers.collect();
@@ -256,10 +246,9 @@ impl SolverSettings {
         Self { friction_model: FrictionModel::OfMethod, ..self }
     }
 
-    /// The same by another method, without a model of friction where that takes none, and of all islands together where it
-    /// takes none by itself.
+    /// The same by another method, without a model of friction where that takes none.
     pub fn by(self, method: Method) -> Self {
-        let by_it = Self { method, islands: self.islands && method.takes_islands(), ..self };
+        let by_it = Self { method, ..self };
         if method.info().takes_models { by_it } else { by_it.without_model() }
     }
 }

@@ -1,9 +1,9 @@
 //! What of a moment counts: the grains that are not lost and their contacts, and what this network says by itself:
 //! contacts of a grain, clusters, and how normal forces are distributed.
 
+use ena::unify::{InPlaceUnificationTable, UnifyKey};
 use glam::DVec2;
 
-use crate::contact::JoinedGrains;
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 
 /// A contact bears a force where that is more than so much of the mean force of all contacts. Smaller: what a solver
@@ -185,7 +185,28 @@ fn rattlers(network: &Network) -> (Vec<bool>, Vec<u32>) {
     (rattlers, left)
 }
 
-/// Sets of grains that contacts join, and how large they are.
+/// A grain in the table of sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Member(u32);
+
+impl UnifyKey for Member {
+    type Value = ();
+
+    fn index(&self) -> u32 {
+        self.0
+    }
+
+    fn from_index(index: u32) -> Self {
+        Self(index)
+    }
+
+    fn tag() -> &'static str {
+        "grain"
+    }
+}
+
+/// Sets of grains that contacts join, and how large they are. What no grain moves joins none: piles on one floor are no
+/// one set.
 pub(super) struct Clusters {
     pub count: u32,
     /// Grains of the largest.
@@ -194,15 +215,16 @@ pub(super) struct Clusters {
 
 impl Clusters {
     pub(super) fn of(network: &Network) -> Self {
-        let mut sets = JoinedGrains::apart(network.grains.len());
+        let mut sets = InPlaceUnificationTable::<Member>::new();
+        network.grains.iter().for_each(|_| _ = sets.new_key(()));
         for link in &network.links {
             if let Some(other) = link.other {
-                sets.join(link.grain as u32, other as u32);
+                sets.union(Member(link.grain as u32), Member(other as u32));
             }
         }
         let mut sizes = vec![0; network.grains.len()];
         for (index, _) in network.grains() {
-            sizes[sets.of(index as u32) as usize] += 1;
+            sizes[sets.find(Member(index as u32)).0 as usize] += 1;
         }
         Self {
             count: sizes.iter().filter(|&&size| size > 0).count() as u32,

@@ -26,7 +26,6 @@ const ADVANCE: SolverSettings = SolverSettings {
     friction_model: FrictionModel::Coulomb,
     model_solves: 1,
     fallback: Fallback::None,
-    islands: false,
 };
 
 /// Width of a box over the root of the number of its grains, in diameters: 16 for 138.

@@ -209,7 +209,7 @@ impl<M: Model> ImpactSequence<M> {
     fn stop_the_rest(
         &mut self,
         problem: &StepProblem<M>,
-        memory: &mut Memory<M>,
+        memory: &mut Memory,
         settings: &SolverSettings,
     ) -> SolveReport {
         let mut rest = problem.clone();

@@ -14,19 +14,18 @@ use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 const CONTACTS_FOR_NEWTON: usize = 10_000;
 
 /// The method that solves a problem of so many contacts under a model of friction, with walls that a force drives or
-/// without: that of the settings, unless they leave it to `auto`. Contacts are counted only then, since to find islands
-/// takes time.
+/// without: that of the settings, unless they leave it to `auto`.
 pub(crate) fn picked(
     settings: &SolverSettings,
     model: FrictionModel,
-    contacts: impl FnOnce() -> usize,
+    contacts: usize,
     is_driven: bool,
 ) -> Method {
     match (settings.method, settings.stop) {
         (Method::Auto, StopTest::ImpulsePerMass) => Method::Nsgs,
         (Method::Auto, _) if model != FrictionModel::Coulomb => Method::InteriorPoint,
         // Newton's method knows of no walls that a force drives.
-        (Method::Auto, _) if !is_driven && contacts() <= CONTACTS_FOR_NEWTON => Method::Newton,
+        (Method::Auto, _) if !is_driven && contacts <= CONTACTS_FOR_NEWTON => Method::Newton,
         (Method::Auto, _) => Method::Nncg,
         (method, _) => method,
     }
@@ -40,11 +39,11 @@ mod tests {
     fn auto_picks_by_model_stop_and_size_and_nothing_else_is_changed() {
         let auto = SolverSettings::default();
         let coulomb =
-            |contacts, is_driven| picked(&auto, FrictionModel::Coulomb, || contacts, is_driven);
+            |contacts, is_driven| picked(&auto, FrictionModel::Coulomb, contacts, is_driven);
         assert_eq!(coulomb(270, false), Method::Newton);
         assert_eq!(coulomb(270, true), Method::Nncg);
         assert_eq!(coulomb(20_000, false), Method::Nncg);
-        let of = |settings| picked(&settings, FrictionModel::Tresca, || 20_000, false);
+        let of = |settings| picked(&settings, FrictionModel::Tresca, 20_000, false);
         assert_eq!(of(auto), Method::InteriorPoint);
         let of_a_sweep = SolverSettings { stop: StopTest::ImpulsePerMass, ..auto };
         assert_eq!(of(of_a_sweep), Method::Nsgs);

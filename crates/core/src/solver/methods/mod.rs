@@ -29,7 +29,7 @@ use super::settings::SolverSettings;
 
 /// What the methods keep from one solve to the next. Results do not depend on it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct MethodMemory {
+pub struct Memory {
     nsgs_parallel: nsgs_parallel::BlockMemory,
     newton: newton::NewtonMemory,
     admm: admm::AdmmMemory,
@@ -40,12 +40,11 @@ pub(super) struct MethodMemory {
 /// Solves a prepared problem with the method of the settings.
 pub(super) fn solve_by_method<M: Model>(
     problem: &mut StepProblem<M>,
-    memory: &mut MethodMemory,
+    memory: &mut Memory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let MethodMemory { nsgs_parallel: blocks, newton, admm, interior_point: path, vectors } =
-        memory;
-    match picked(settings, problem.friction.model, || problem.rows.len(), problem.is_driven()) {
+    let Memory { nsgs_parallel: blocks, newton, admm, interior_point: path, vectors } = memory;
+    match picked(settings, problem.friction.model, problem.rows.len(), problem.is_driven()) {
         Method::Nsgs | Method::Auto => nsgs::solve(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve(problem, blocks, settings),
         Method::Newton => newton::solve(problem, newton, vectors, settings),

@@ -17,8 +17,7 @@ use crate::solver::settings::{SolverSettings, StopTest};
 /// How a solve ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveReport {
-    /// Sweeps done; iterations where the method has no sweeps. Of islands, those of the one that took most, as with
-    /// factorisations.
+    /// Sweeps done; iterations where the method has no sweeps.
     pub sweeps: u32,
     /// Matrices factorised.
     pub factorisations: u32,
@@ -44,17 +43,9 @@ impl SolveReport {
     /// Counts another solve of the same step. The step has stalled where one of them has, and has fallen back where none is
     /// unsolved.
     pub fn add(&mut self, other: Self) {
-        let Self { sweeps, factorisations, .. } = *self;
-        self.add_beside(other);
-        self.sweeps = sweeps + other.sweeps;
-        self.factorisations = factorisations + other.factorisations;
-    }
-
-    /// Counts the solve of another island of the same step, which went beside this one.
-    pub(crate) fn add_beside(&mut self, other: Self) {
         let is_any_unsolved = self.is_unsolved() || other.is_unsolved();
-        self.sweeps = self.sweeps.max(other.sweeps);
-        self.factorisations = self.factorisations.max(other.factorisations);
+        self.sweeps += other.sweeps;
+        self.factorisations += other.factorisations;
         self.converged &= other.converged;
         self.stalled |= other.stalled;
         self.fell_back = (self.fell_back || other.fell_back) && !is_any_unsolved;
@@ -188,20 +179,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn islands_take_as_long_as_the_slowest_and_fall_back_where_all_that_are_unsolved_do() {
+    fn a_step_has_fallen_back_where_all_of_its_solves_that_are_unsolved_did() {
         let solved = SolveReport { sweeps: 9, converged: true, ..SolveReport::default() };
         let fallen = SolveReport { sweeps: 3, factorisations: 2, fell_back: true, ..solved };
         let fallen = SolveReport { converged: false, ..fallen };
         let left = SolveReport { stalled: true, ..SolveReport::default() };
         let all = |reports: &[SolveReport]| {
             let mut all = SolveReport::nothing_yet();
-            reports.iter().for_each(|&report| all.add_beside(report));
+            reports.iter().for_each(|&report| all.add(report));
             all
         };
-        let both = SolveReport { sweeps: 9, ..fallen };
-        assert_eq!(all(&[solved, fallen, solved]), both);
-        assert_eq!(all(&[solved, solved]), solved);
-        let unsolved = SolveReport { fell_back: false, stalled: true, ..both };
+        assert_eq!(all(&[solved, fallen, solved]), SolveReport { sweeps: 21, ..fallen });
+        assert_eq!(all(&[solved, solved]), SolveReport { sweeps: 18, ..solved });
+        let unsolved = SolveReport { fell_back: false, stalled: true, sweeps: 12, ..fallen };
         assert_eq!(all(&[fallen, left, solved]), unsolved);
         assert_eq!(all(&[left, solved, fallen]), unsolved);
     }

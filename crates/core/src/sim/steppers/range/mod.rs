@@ -34,7 +34,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
     source: "bonds that cost the work C₀δc; shocks apart from loads",
     settings: "bond dt tilt rho mu cone restitution-threshold debonding-distance solver \
-        ordering stop tolerance max-sweeps warm-start friction-model model-solves fallback islands",
+        ordering stop tolerance max-sweeps warm-start friction-model model-solves fallback",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
     check: |parameters| match parameters.cone {

@@ -25,7 +25,7 @@ const SWEEPS_FOR_BOUNDS: u32 = 50;
 /// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
-    memory: &mut Memory<M>,
+    memory: &mut Memory,
     settings: &SolverSettings,
     model: FrictionModel,
     least: f64,
@@ -134,7 +134,7 @@ impl Shocks {
         &mut self,
         problem: &mut StepProblem<M>,
         part: &mut StepProblem<M>,
-        memory: &mut Memory<M>,
+        memory: &mut Memory,
         settings: &SolverSettings,
         alone: bool,
         result: &mut StepResult,
