@@ -13,7 +13,7 @@ mod words;
 
 use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -216,8 +216,14 @@ fn runner_of(shard: Option<Shard>, folder: &Path) -> Result<(Runner<RunValues>, 
     let journal = Journal::open(folder, &name)?;
     let own = journal::path_of(folder, &name);
     let (mut finished, mut others) = (HashMap::new(), HashSet::new());
-    // Its own last: a run that two of them have is its own.
     let mut paths = journal::journals(&[folder.to_owned()])?;
+    // What else lies there is of no budget.
+    let is_of_a_part = |path: &PathBuf| {
+        let name = path.file_stem().and_then(|name| name.to_str());
+        name.is_some_and(|name| name.starts_with(JOURNAL))
+    };
+    paths.retain(is_of_a_part);
+    // Its own last: a run that two of them have is its own.
     paths.sort_by_key(|path| *path == own);
     for path in paths {
         for case in journal::read::<FinishedCase<RunValues>>(&path)? {
