@@ -54,7 +54,6 @@ class _Settings(TypedDict):
     friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     fallback: Literal["of-method", "none", "tresca"]
-    islands: bool
     push_out: bool
     max_travel: float
     calm_unsolved: bool
@@ -83,7 +82,6 @@ class _Changes(TypedDict, total=False):
     friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"] | None
     model_solves: int | None
     fallback: Literal["of-method", "none", "tresca"] | None
-    islands: bool | None
     push_out: bool | None
     max_travel: float | None
     calm_unsolved: bool | None
@@ -112,7 +110,6 @@ class _Attributes:
     friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     fallback: Literal["of-method", "none", "tresca"]
-    islands: bool
     push_out: bool
     max_travel: float
     calm_unsolved: bool
