@@ -147,9 +147,13 @@ fn ends(mean: &Mean) -> [f64; 3] {
 
 fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseRow {
     let ran = &runs.all[series];
-    let failure = match ran.is_empty() {
-        true => Some("that does not fit into the time".to_owned()),
-        false => runs.failure(series, quantity),
+    let failure = match ran[..] {
+        _ if runs.is_begun(series) => runs.failure(series, quantity),
+        [] => Some("that does not fit into the time".to_owned()),
+        _ => Some(format!(
+            "that does not fit into the time: a run takes {:.0} times as long",
+            runs.cost_ratio(series)
+        )),
     };
     let adds = runs.interval(series, quantity);
     CauseRow {
@@ -159,7 +163,7 @@ fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseR
         starts: if failure.is_none() { adds.count } else { 0 },
         adds: failure.is_none().then_some(ends(&adds)),
         unsolved: ran.iter().map(|ran| ran.values.unsolved).sum::<f64>() / ran.len().max(1) as f64,
-        cost: (!ran.is_empty()).then(|| runs.cost_ratio(series)),
+        cost: runs.is_begun(series).then(|| runs.cost_ratio(series)),
         failure,
         kind: variant.cause,
     }
@@ -170,7 +174,7 @@ pub(super) fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Opt
     let all = design.variants.iter().zip(1..);
     let of_steps = all.filter(|(variant, series)| {
         variant.cause == Cause::TimeStep
-            && !runs.all[*series].is_empty()
+            && runs.is_begun(*series)
             && runs.failure(*series, quantity).is_none()
     });
     of_steps.map(|(_, series)| series).collect::<Vec<_>>().try_into().ok()
@@ -271,6 +275,18 @@ mod tests {
         limits: Limits,
         of: &(impl Fn(Option<&Variant>) -> f64 + Sync),
     ) -> QuantityBudget {
+        let as_expected = |variant: Option<&Variant>| variant.map_or(1.0, |one| one.cost);
+        made_up_at(seed, scatter, limits, of, &as_expected)
+    }
+
+    /// The same with `cost_of` a run of each variant, s.
+    fn made_up_at(
+        seed: u64,
+        scatter: f64,
+        limits: Limits,
+        of: &(impl Fn(Option<&Variant>) -> f64 + Sync),
+        cost_of: &(impl Fn(Option<&Variant>) -> f64 + Sync),
+    ) -> QuantityBudget {
         let mut scene = built_in("pile").unwrap();
         scene.parameters.bond = 20.0;
         let variants = variants(&scene, Some(&NewPile::default()), true);
@@ -284,7 +300,7 @@ mod tests {
             let shared = normal(seed * 1_000_003 + 999_000 + start as u64);
             let added = of(series.checked_sub(1).map(|one| &variants[one]));
             let values = vec![Some(0.3 + added + 0.1 * shared + scatter * own)];
-            let cost = series.checked_sub(1).map_or(1.0, |one| variants[one].cost);
+            let cost = cost_of(series.checked_sub(1).map(|one| &variants[one]));
             Ok(Ran {
                 values: RunValues { values, failure: None, unsolved: 0.0, run_secs: cost },
                 secs: cost,
@@ -411,5 +427,29 @@ mod tests {
         );
         assert!(budget.causes.iter().any(|row| row.failure.is_some()), "{:?}", budget.causes);
         assert_eq!(budget.trust, Trust::NotKnownYet);
+    }
+
+    /// Made-up runs cost what is expected of them, but for those under another law: ten times that.
+    #[test]
+    fn a_law_that_is_dearer_than_expected_does_not_take_the_time_of_all_else() {
+        let is_dear = |variant: &Variant| variant.cause == Cause::ContactLaw;
+        let spent = std::sync::Mutex::new(0.0);
+        let limits = Limits { cost_secs: 250.0, ..FREE };
+        let budget = made_up_at(1, 0.0, limits, &|_| 0.0, &|variant| {
+            let cost = variant.map_or(1.0, |one| one.cost * if is_dear(one) { 10.0 } else { 1.0 });
+            *spent.lock().unwrap() += cost;
+            cost
+        });
+        let laws = budget.causes.iter().filter(|row| row.kind == Cause::ContactLaw);
+        let dear: Vec<&CauseRow> = laws.collect();
+        assert_eq!(dear.len(), 2);
+        for row in dear {
+            let note = row.failure.as_deref().unwrap_or("");
+            assert_eq!(note, "that does not fit into the time: a run takes 40 times as long");
+        }
+        let others = |row: &&CauseRow| row.kind != Cause::ContactLaw;
+        let all: Vec<&CauseRow> = budget.causes.iter().filter(others).collect();
+        assert!(all.iter().all(|row| row.starts >= 4), "{all:?}");
+        assert!(*spent.lock().unwrap() <= 250.0, "{spent:?}");
     }
 }

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::statistics::{Mean, mean, mean_with};
 
-/// Starts that each variant has at first: fewer tell next to nothing of the scatter.
+/// Starts that a series has at least: fewer tell next to nothing of the scatter.
 const FIRST: usize = 4;
 /// Share of budgets in which an interval may not hold the true value, of all that a budget has.
 pub(super) const OUTSIDE: f64 = 0.05;
@@ -135,6 +135,11 @@ impl Runs {
         secs(series) / secs(0)
     }
 
+    /// True where a series has as many runs as one needs to be told of.
+    pub(super) fn is_begun(&self, series: usize) -> bool {
+        self.all[series].len() >= FIRST
+    }
+
     fn secs_a_run(&self, series: usize) -> f64 {
         let mean_of = |one: usize, secs: fn(&Ran) -> f64| {
             let runs = &self.all[one];
@@ -217,21 +222,23 @@ fn width(runs: &Runs, quantity: usize) -> f64 {
     format!("{rough:.0e}").parse().unwrap_or(rough)
 }
 
-/// First starts of the series without a run that fit into what is left of the time, the cheapest first.
+/// First starts of series that fit into what is left of the time, the cheapest first. What a run costs under a dear law is
+/// known to a factor of ten before one was measured, so that a series has one run at first, and the others if they fit.
 fn begun(
     runs: &Runs,
     left_secs: f64,
     secs_of: &impl Fn(&Runs, &[Job]) -> Result<f64>,
 ) -> Result<Vec<Job>> {
     let mut new: Vec<usize> =
-        (0..runs.all.len()).filter(|&series| runs.all[series].is_empty()).collect();
-    new.sort_by(|one, other| runs.costs[*one].total_cmp(&runs.costs[*other]));
+        (0..runs.all.len()).filter(|&series| !runs.is_begun(series)).collect();
+    new.sort_by(|one, other| runs.secs_a_run(*one).total_cmp(&runs.secs_a_run(*other)));
     let (mut left, mut jobs) = (left_secs, Vec::new());
     for series in new {
-        let more: Vec<Job> = first(series).collect();
+        let had = runs.all[series].len();
+        let more: Vec<Job> = first(series).skip(had).collect();
         left -= secs_of(runs, &more)?;
         if left >= 0.0 {
-            jobs.extend(more);
+            jobs.extend(more.into_iter().take(if had == 0 { 1 } else { FIRST }));
         }
     }
     Ok(jobs)
@@ -243,13 +250,13 @@ fn widened(
     left_secs: f64,
     secs_of: &impl Fn(&Runs, &[Job]) -> Result<f64>,
 ) -> Result<std::result::Result<Vec<Job>, Ended>> {
-    let begun = (0..runs.all.len()).filter(|&series| !runs.all[series].is_empty());
+    let begun = (0..runs.all.len()).filter(|&series| runs.is_begun(series));
     let mut wide: Vec<(f64, usize)> = begun
         .map(|series| (runs.excess(series), series))
         .filter(|(excess, _)| *excess > 1.0)
         .collect();
     if wide.is_empty() {
-        let is_whole = runs.all.iter().all(|series| !series.is_empty());
+        let is_whole = (0..runs.all.len()).all(|series| runs.is_begun(series));
         return Ok(Err(if is_whole { Ended::Within } else { Ended::Cost }));
     }
     wide.sort_by(|one, other| other.0.total_cmp(&one.0));

@@ -289,8 +289,7 @@ impl Words<'_> {
             Ended::Within => all,
             Ended::Stopped => format!("{all} More is on its way."),
             Ended::Cost | Ended::Failed => {
-                let widest =
-                    (0..self.runs.all.len()).filter(|&series| !self.runs.all[series].is_empty());
+                let widest = (0..self.runs.all.len()).filter(|&series| self.runs.is_begun(series));
                 let widest = widest.max_by(|one, other| {
                     self.runs.excess(*one).total_cmp(&self.runs.excess(*other))
                 });
