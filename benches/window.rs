@@ -16,7 +16,7 @@ use slump::app::{AppState, Canvas, Preferences, SOFTWARE_FRAME_INTERVAL, theme, 
 use slump::config::Config;
 use slump::live::{Command, Live, LiveFrame, LiveOptions, LiveStart, Pace};
 use slump::sim::{Simulation, Tally};
-use slump::solver::{Fallback, Method, SolverSettings, StopTest};
+use slump::solver::{Method, SolverSettings, StopTest};
 
 /// Pixels of the window.
 const SIZE: [u32; 2] = [1280, 800];
@@ -208,7 +208,6 @@ fn large(count: usize) -> Simulation {
         stop: StopTest::Residual,
         tolerance: 1e-6,
         max_sweeps: 40,
-        fallback: Fallback::None,
         ..*simulation.solver()
     };
     simulation.set_solver(settings).expect("proper settings");

@@ -53,7 +53,6 @@ class _Settings(TypedDict):
     warm_start: bool
     friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
-    fallback: Literal["of-method", "none", "tresca"]
     push_out: bool
     max_travel: float
     calm_unsolved: bool
@@ -81,7 +80,6 @@ class _Changes(TypedDict, total=False):
     warm_start: bool | None
     friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"] | None
     model_solves: int | None
-    fallback: Literal["of-method", "none", "tresca"] | None
     push_out: bool | None
     max_travel: float | None
     calm_unsolved: bool | None
@@ -109,7 +107,6 @@ class _Attributes:
     warm_start: bool
     friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
-    fallback: Literal["of-method", "none", "tresca"]
     push_out: bool
     max_travel: float
     calm_unsolved: bool

@@ -3,7 +3,7 @@
 use crate::config::Config;
 use crate::scene::Scene;
 use crate::sim::{Settings, Stepper, Surroundings};
-use crate::solver::{Fallback, FrictionModel, Method, SolverChanges, SolverSettings};
+use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic};
 
 /// Piles of more grains begin with sweeps that are counted, so that they move before one's eyes: a certified step of 1,000
@@ -44,10 +44,7 @@ pub(super) const FAST: Budget = Budget {
     name: "Fast",
     hint: "40 sweeps a step, solved or not, for large piles, whose slump hardly feels it; that of a small pile may be \
            off by a tenth. A step of 10,000 grains takes some 10 ms.",
-    settings: SolverSettings {
-        fallback: Fallback::None,
-        ..SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40)
-    },
+    settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
     is_certain: false,
 };
 
@@ -91,20 +88,10 @@ pub(super) fn for_grains(grains: usize) -> Budget {
 }
 
 /// What a scene begins with whose user says nothing of how well its steps are to be solved: a pile what suits its
-/// size, every other what it says itself. Whoever watches must not take the impulses of an unsolved
-/// step for those of a law, so such a step is then solved under bounds of friction, but where a force drives a wall,
-/// of which that solution knows nothing.
-pub(super) fn complete(scene: &mut Scene, asked: &SolverChanges) {
-    let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
-    let is_pile = scene.name == Config::DEFAULT_SCENE;
-    if is_pile && scene.solver == SolverSettings::default() {
+/// size, every other what it says itself.
+pub(super) fn complete(scene: &mut Scene) {
+    if scene.name == Config::DEFAULT_SCENE && scene.solver == SolverSettings::default() {
         scene.solver = for_grains(scene.grains.len()).settings;
-    } else if !is_driven
-        && asked.fallback.is_none()
-        && scene.solver.fallback != Fallback::Tresca
-        && scene.solver.model(false) == FrictionModel::Coulomb
-    {
-        scene.solver.fallback = Fallback::Tresca;
     }
 }
 
@@ -139,17 +126,6 @@ pub(super) fn what_to_try(settings: &Settings) -> &'static str {
 mod tests {
     use super::*;
     use crate::scene::built_in;
-
-    #[test]
-    fn steps_fall_back_in_the_window_but_where_a_force_drives_a_wall() {
-        for (name, fallback) in [("cradle", Fallback::Tresca), ("shear", Fallback::OfMethod)] {
-            let mut scene = built_in(name).expect("a scene");
-            complete(&mut scene, &SolverChanges::default());
-            assert_eq!(scene.solver.fallback, fallback, "{name}");
-            scene.simulation().expect("a sound scene");
-        }
-        assert!(COULOMB.settings.falls_back(), "by its method");
-    }
 
     fn surroundings(name: &str) -> std::sync::Arc<Surroundings> {
         let scene = built_in(name).expect("a scene").simulation().expect("a sound scene");

@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::live::Command;
 use crate::scene::{NewPile, Scene};
 use crate::sim::{Settings, Stepper};
-use crate::solver::{Fallback, Method, SolverSettings};
+use crate::solver::{Method, SolverSettings};
 use crate::world::FrictionCone;
 
 /// What one lesson shows.
@@ -93,11 +93,7 @@ fn two_time_steps(base: Settings, bond: f64) -> Vec<Settings> {
 
 /// That many sweeps of Gauss-Seidel a step on Coulomb's law, solved or not.
 fn sweeps(base: Settings, count: u32) -> Settings {
-    let solver = SolverSettings {
-        fallback: Fallback::None,
-        ..SolverSettings::to_residual(Method::Nsgs, 1e-6, count)
-    };
-    Settings { solver, ..base }
+    Settings { solver: SolverSettings::to_residual(Method::Nsgs, 1e-6, count), ..base }
 }
 
 fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {

@@ -60,13 +60,13 @@ impl StartSource for Opening {
         match *self {
             Self::Scene(config) => {
                 let mut scene = settled(&config, tell)?;
-                budget::complete(&mut scene, &config.solver);
+                budget::complete(&mut scene);
                 start(&scene, *config)
             }
             Self::Lesson(at) => {
                 let lesson = &LESSONS[at.min(LESSONS.len() - 1)];
                 let (config, mut scene) = lesson.scene()?;
-                budget::complete(&mut scene, &config.solver);
+                budget::complete(&mut scene);
                 let worlds = (lesson.worlds)(scene.settings());
                 let start = start(&scene, config)?;
                 let zoomed = lesson.view.map(|view| view.map(|end| scene.mean_diameter * end));

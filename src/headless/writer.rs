@@ -324,14 +324,10 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     if unconverged_steps == 0 {
         return;
     }
-    let instead = match tally.fallback_steps {
-        0 => String::new(),
-        steps => format!(", {steps} fell back on bounds of friction, solved with a certificate"),
-    };
     note_line(legible(&format!(
         "{} (Bond {}, time step {} s): {unconverged_steps} of {steps} steps did not reach tolerance \
          {:e} within {} sweeps, {stalled_steps} of them stalled (more sweeps would be of no \
-         use){instead}; velocities are off by {:.2} mm/s at most",
+         use); velocities are off by {:.2} mm/s at most",
         scene.name,
         scene.parameters.bond,
         scene.parameters.time_step_secs,

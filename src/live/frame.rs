@@ -67,8 +67,6 @@ pub struct WorldFrame {
     pub recorded_secs: f64,
     /// Steps up to this moment that were not solved to the tolerance.
     pub unconverged_steps: u64,
-    /// How many of these were solved under bounds of friction instead of Coulomb's law.
-    pub fallback_steps: u64,
     /// Mean time that a step takes lately, ms.
     pub step_ms: f64,
     /// The method that solves it, also where `auto` picks it.
@@ -153,7 +151,6 @@ impl WorldFrame {
             recorded_from_secs: world.record.start().time_secs(),
             recorded_secs: world.record.end_secs(),
             unconverged_steps: tally.unconverged_steps,
-            fallback_steps: tally.fallback_steps,
             step_ms: 1e3 * world.step_secs,
             substeps: simulation.substeps(),
             picked_method: simulation.picked_method(),

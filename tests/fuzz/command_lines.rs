@@ -21,7 +21,7 @@ const SLOWEST: Duration = Duration::from_secs(180);
 const REFUSED: &str = "-1 nan inf -inf 1e300 -1e-300 much 0x10";
 
 /// Options with values that mean something.
-const OPTIONS: [&str; 25] = [
+const OPTIONS: [&str; 24] = [
     "--stepper moreau range tgs-soft avbd dem",
     "--bond 0 1 20 1000",
     "--rho 0 0.1 0.9 1",
@@ -36,7 +36,6 @@ const OPTIONS: [&str; 25] = [
     "--warm-start true false",
     "--friction-model coulomb tresca associated desaxce",
     "--model-solves 1 2 5",
-    "--fallback of-method none tresca",
     "--push-out true false",
     "--max-travel 0 0.25 1e-3",
     "--calm-unsolved true false",

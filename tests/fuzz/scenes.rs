@@ -6,7 +6,7 @@ use slump::config::{read_scene, scene_to_toml};
 use slump::error::Error;
 use slump::scene::{Scene, built_in};
 use slump::sim::{AlarmKind, Observables, Remedies, Simulation, Stepper};
-use slump::solver::{Fallback, FrictionModel, METHODS, Ordering, SolverSettings, StopTest};
+use slump::solver::{FrictionModel, METHODS, Ordering, SolverSettings, StopTest};
 use slump::world::{
     Boundary, Disc, Drive, FrictionCone, Grain, Gravity, GravityTurn, Motion, MotionCourse,
     Parameters, Periodic, Physics, TurnCourse,
@@ -80,7 +80,6 @@ fn solver(u: &mut Unstructured<'_>) -> Result<SolverSettings> {
         warm_start: u.arbitrary()?,
         friction_model: *u.choose(FrictionModel::ALL)?,
         model_solves: *u.choose(&[1, 1, 1, 3])?,
-        fallback: *u.choose(Fallback::ALL)?,
     })
 }
 

@@ -123,7 +123,6 @@ fn a_stalled_step_of_the_stepper_range_is_told_of() {
         // Below the rounding of any step of a pile.
         tolerance: Some(1e-18),
         max_sweeps: Some(100_000),
-        fallback: Some(Fallback::None),
         ..SolverChanges::default()
     };
     let mut robot = Robot::open(config);
@@ -135,38 +134,23 @@ fn a_stalled_step_of_the_stepper_range_is_told_of() {
 }
 
 #[test]
-fn a_step_that_is_not_solved_falls_back_unless_it_must_not_and_the_window_says_so() {
-    for asked in [None, Some(Fallback::None)] {
-        let mut config = scene("pile");
-        config.parameters.time_step_secs = Some(5e-3);
-        config.solver = SolverChanges {
-            friction_model: Some(FrictionModel::Coulomb),
-            max_sweeps: Some(3),
-            fallback: asked,
-            ..SolverChanges::default()
-        };
-        let mut robot = Robot::open(config);
-        robot.click("Law, solver");
-        for _ in 0..5 {
-            robot.key(egui::Key::ArrowRight);
-        }
-        let row = robot.observables();
-        assert!(!row.converged, "three sweeps are too few");
-        robot.harness.step();
-        let says = |text: &str| robot.harness.query_all_by_label_contains(text).count();
-        if asked.is_none() {
-            assert_eq!(row.fell_back, Some(true));
-            assert!(row.model_residual.is_some_and(|residual| residual <= 1e-8), "{row:?}");
-            assert_eq!(robot.world().fallback_steps, robot.world().unconverged_steps);
-            assert_eq!(says("not Coulomb's law"), 1);
-        } else {
-            assert_eq!((row.fell_back, robot.world().fallback_steps), (None, 0));
-            assert_eq!((says("not Coulomb's law"), says("not converged")), (0, 1));
-        }
-        robot.state_mut().preferences.page = None;
-        let word = if asked.is_none() { "not known yet" } else { "no" };
-        robot.click(&format!("Can I trust this? {word}"));
-        assert!(robot.shows("5 of 5 steps were not solved as asked"));
-        assert_eq!(robot.shows("solved under bounds of friction instead"), asked.is_none());
+fn a_step_that_is_not_solved_is_told_of_on_both_pages() {
+    let mut config = scene("pile");
+    config.parameters.time_step_secs = Some(5e-3);
+    config.solver = SolverChanges {
+        friction_model: Some(FrictionModel::Coulomb),
+        max_sweeps: Some(3),
+        ..SolverChanges::default()
+    };
+    let mut robot = Robot::open(config);
+    robot.click("Law, solver");
+    for _ in 0..5 {
+        robot.key(egui::Key::ArrowRight);
     }
+    assert!(!robot.observables().converged, "three sweeps are too few");
+    robot.harness.step();
+    assert_eq!(robot.harness.query_all_by_label_contains("not converged").count(), 1);
+    robot.state_mut().preferences.page = None;
+    robot.click("Can I trust this? no");
+    assert!(robot.shows("5 of 5 steps were not solved as asked"));
 }

@@ -56,8 +56,7 @@ fn frames_are_at_the_times_that_data_has_them_at() {
     robot.state_mut().preferences.data.every_secs = 0.0073;
     robot.take_steps(50);
     export(&mut robot);
-    let options =
-        ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.05", "--fallback", "tresca"];
+    let options = ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.05"];
     headless(&[&options[..], &["--data-every", "0.0073"]].concat(), &written);
     assert_same(&exported, &written);
 }

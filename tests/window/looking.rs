@@ -191,8 +191,6 @@ fn the_panel_tells_the_residual_of_the_last_step() {
     (settings.solver.stop, settings.solver.tolerance) = (StopTest::Residual, 1e-7);
     settings.solver.max_sweeps = 20_000;
     settings.solver.friction_model = FrictionModel::Coulomb;
-    // By Coulomb's law bounds of friction may err by any amount.
-    settings.solver.fallback = Fallback::None;
     robot.change(0, settings);
     robot.key(egui::Key::ArrowRight);
     assert!(residual(&robot) < 0.1 * loose, "{} after {loose}", residual(&robot));

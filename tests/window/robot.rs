@@ -8,7 +8,7 @@ pub use slump::data::{FormatName, read_grains};
 pub use slump::live::{Command, Live, LiveOptions, Pace, WorldFrame};
 pub use slump::scene::*;
 pub use slump::sim::*;
-pub use slump::solver::{Fallback, FrictionModel, Method, SolverChanges, StopTest};
+pub use slump::solver::{FrictionModel, Method, SolverChanges, StopTest};
 
 pub use crate::program::{
     Duration, Instant, PATIENCE, Path, PathBuf, bytes, folder, json, names_in, read, run, said,

@@ -45,7 +45,7 @@ struct Group {
     /// The same of this slump less that under the first value of a list, all else alike, over the starts of both. By the
     /// first name of the list.
     less_first: BTreeMap<String, [f64; 2]>,
-    /// Share of the steps that were not solved, as asked or by falling back.
+    /// Share of the steps that were not solved as asked.
     unsolved: f64,
     /// The largest bound that a step had on the velocities' error, m/s.
     largest_velocity_error: f64,
@@ -132,11 +132,7 @@ fn groups(study: &Study, table: &RunsTable) -> Result<Vec<Group>> {
         let all = &runs[&words(values)];
         let tallies = || all.iter().map(|run| &run.result.tally);
         let steps: u64 = tallies().map(|tally| tally.steps).sum();
-        let unsolved: u64 = tallies()
-            .map(|tally| {
-                tally.unconverged_steps - tally.fallback_steps.min(tally.unconverged_steps)
-            })
-            .sum();
+        let unsolved: u64 = tallies().map(|tally| tally.unconverged_steps).sum();
         Group {
             settings: varied().cloned().zip(values.iter().cloned()).collect(),
             starts: here.len(),

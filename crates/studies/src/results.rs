@@ -54,7 +54,7 @@ pub struct RunResult {
 impl RunResult {
     /// Its columns in a table.
     const COLUMNS: &str = "status,steps,slump,mean_overlap,max_overlap,mean_contacts,first_gap,\
-        unconverged_steps,stalled_steps,fallback_steps,sweeps,largest_residual,\
+        unconverged_steps,stalled_steps,sweeps,largest_residual,\
         largest_velocity_error,lost_grains,alarms";
 
     fn cells(&self) -> impl Serialize + '_ {
@@ -69,7 +69,6 @@ impl RunResult {
             first_gap,
             tally.unconverged_steps,
             tally.stalled_steps,
-            tally.fallback_steps,
             tally.sweeps,
             tally.largest_residual,
             tally.largest_velocity_error,

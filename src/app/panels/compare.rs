@@ -9,7 +9,7 @@ use crate::app::theme;
 use crate::live::{Command, Controls};
 use crate::setting::Value;
 use crate::sim::{Settings, Stepper};
-use crate::solver::{Fallback, FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
+use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::FrictionCone;
 
@@ -103,10 +103,7 @@ const LINE_UPS: [LineUp; 7] = [
             let base = stepped(base, Stepper::Moreau);
             let by = |friction_model, model_solves| {
                 let method = Method::Nsgs;
-                // Coulomb's law would else be mixed with tresca.
-                let fallback = Fallback::None;
-                let by_it = SolverSettings { method, fallback, ..base.solver };
-                let solver = SolverSettings { friction_model, model_solves, ..by_it };
+                let solver = SolverSettings { method, friction_model, model_solves, ..base.solver };
                 Settings { solver, ..base }
             };
             let once = FrictionModel::SOLVED.iter().map(|&model| by(model, 1));
@@ -182,7 +179,7 @@ pub(crate) fn title(state: &AppState, index: usize) -> String {
 }
 
 /// Settings whose differences follow from those of others.
-const FOLLOWING: [&str; 3] = ["stop", "tolerance", "fallback"];
+const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
 /// And those that follow from the method.
 const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
 

@@ -220,8 +220,6 @@ fn solved(ui: &mut Ui, world: &WorldFrame) {
         (mark, colour) = ("○ no step yet".into(), ui.visuals().weak_text_color());
     } else if last.converged {
         (mark, colour) = (format!("● converged, {}", within(last)), theme::good(dark));
-    } else if last.fell_back == Some(true) {
-        mark += "◆ not Coulomb's law: solved under bounds of friction";
     } else if last.stalled {
         mark += &format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual);
     } else {

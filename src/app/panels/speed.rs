@@ -16,7 +16,7 @@ use crate::app::work::{Reporter, Work};
 use crate::error::Result;
 use crate::live::WorldFrame;
 use crate::sim::{Settings, Simulation, StepTimes};
-use crate::solver::{Fallback, METHODS, Method, SolverSettings, StopTest};
+use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
 /// Tolerances of the residual, from loose to tight.
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
@@ -128,7 +128,6 @@ fn timed(
         stop: StopTest::Residual,
         tolerance,
         max_sweeps: MOST_SWEEPS,
-        fallback: Fallback::None,
         ..before.solver.by(method)
     };
     let mut least = [f64::INFINITY, f64::NAN];

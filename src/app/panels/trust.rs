@@ -45,7 +45,7 @@ pub(super) fn word(state: &AppState) -> Trust {
     let Some(world) = state.world() else { return Trust::NotKnownYet };
     let is_bad = |kind| world.alarms.iter().any(|alarm| alarm.kind == kind);
     let steps = world.snapshot.observables.step.max(1);
-    let unsolved = world.unconverged_steps.saturating_sub(world.fallback_steps) as f64;
+    let unsolved = world.unconverged_steps as f64;
     if world.failure.is_some()
         || is_bad(AlarmKind::NotFinite)
         || is_bad(AlarmKind::GrainLost)
@@ -152,18 +152,11 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     if unsolved == 0 {
         return vec![format!("● All {} are solved as asked, {off}.", counted(last.step, "step"))];
     }
-    let mut lines = vec![format!(
-        "● {unsolved} of {} were not solved as asked, {off}.",
-        counted(last.step, "step")
-    )];
-    if world.fallback_steps > 0 {
-        lines.push(format!(
-            "● {} of them were solved under bounds of friction instead.",
-            world.fallback_steps
-        ));
-    }
-    lines.push("● Certified, under Law, solver, solves each step.".into());
-    lines
+    let steps = counted(last.step, "step");
+    vec![
+        format!("● {unsolved} of {steps} were not solved as asked, {off}."),
+        "● Certified, under Law, solver, solves each step.".into(),
+    ]
 }
 
 /// What the error budget says, or how far it is.

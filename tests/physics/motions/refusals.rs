@@ -129,13 +129,6 @@ fn ways_to_step_that_know_of_no_driven_wall_are_refused() {
     assert!(taken >= 5);
     let refused = Stepper::ALL.iter().filter(|stepper| !stepper.info().takes_drives);
     assert!(refused.eq(&[Stepper::Avbd]));
-    refuses(
-        &pressed(1.0),
-        &[(
-            "fallback is tresca, but must be none or of-method where a motion has a drive",
-            &|scene| scene.solver.fallback = Fallback::Tresca,
-        )],
-    );
 }
 
 #[test]

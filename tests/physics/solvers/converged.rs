@@ -179,7 +179,7 @@ fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
     for (scene, solver) in pairs(scenes(false), solvers.collect::<Vec<_>>()) {
         let name = format!("{}, {solver:?}", scene.name);
         // Few sweeps, so that some pieces are not solved.
-        let solver = SolverSettings { max_sweeps: 20, fallback: Fallback::None, ..solver };
+        let solver = SolverSettings { max_sweeps: 20, ..solver };
         let Ok(mut run) = Scene { solver, stepper: Stepper::Range, ..scene }.simulation() else {
             continue;
         };

@@ -195,9 +195,7 @@ fn every_method_honours_every_stopping_test_and_the_limit() {
                 let most = first.sweeps.div_ceil(4);
                 assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
             }
-            // What a step falls back on has a limit of its own.
-            let fallback = Fallback::None;
-            let hasty = SolverSettings { tolerance: 1e-14, max_sweeps: 5, fallback, ..settings };
+            let hasty = SolverSettings { tolerance: 1e-14, max_sweeps: 5, ..settings };
             let (report, residual) = next_with(moment, hasty);
             assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");
             assert!(residual <= 1.0, "{name}: {residual}");
@@ -221,8 +219,7 @@ fn a_step_without_contacts_is_solved_by_every_method() {
 fn settings_from_before_there_were_orders_are_read() {
     let json = r#"{"method":"nsgs","tolerance":1e-6,"max_sweeps":5000,"warm_start":true}"#;
     let settings: SolverSettings = serde_json::from_str(json).expect("settings");
-    let fallback = Fallback::OfMethod;
-    assert_eq!(settings, SolverSettings { fallback, ..SolverSettings::SWEEPS });
+    assert_eq!(settings, SolverSettings::SWEEPS);
 }
 
 #[test]

@@ -287,7 +287,6 @@ fn observables(all: &[Observables]) -> Columns {
             ("residual", row.residual.into()),
             ("model_residual", optional(row.model_residual)),
             ("velocity_error", row.velocity_error.into()),
-            ("fell_back", optional(row.fell_back.map(|fell_back| u8::from(fell_back).into()))),
             ("contacts", Cell::Whole(row.contacts.into())),
             ("compressive_contacts", Cell::Whole(row.compressive_contacts.into())),
             ("tensile_contacts", Cell::Whole(row.tensile_contacts.into())),

@@ -40,10 +40,6 @@ pub struct Observables {
     /// against its solution. Under Coulomb's law, against the solution under the bounds that the impulses have.
     #[serde(default)]
     pub velocity_error: f64,
-    /// True where a step that was not solved under Coulomb's law was solved under bounds of friction instead; none
-    /// where that cannot be.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fell_back: Option<bool>,
     /// All contacts, with grains and with fixed shapes.
     pub contacts: u32,
     /// Contacts with N > 0.
@@ -116,7 +112,6 @@ impl Observables {
         let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
         Self {
             model_residual: number(self.model_residual),
-            fell_back: Some(self.fell_back.unwrap_or(false)),
             drive_energy: number(self.drive_energy),
             drive_work: number(self.drive_work),
             border_work: number(self.border_work),
@@ -178,7 +173,7 @@ fn of_state<M: Model>(
     initial_heights: f64,
 ) -> Observables {
     let StepResult { report, measures, gravity_work, drive_work, bonds } = result;
-    let SolveReport { sweeps, factorisations, converged, stalled, fell_back } = report;
+    let SolveReport { sweeps, factorisations, converged, stalled } = report;
     let Measures { residual, model_residual, velocity_error, .. } = measures;
     let Measures { compressive_contacts, tensile_contacts, .. } = measures;
     let Measures { normal_work, tangential_work, wall_work, border_work, .. } = measures;
@@ -201,7 +196,6 @@ fn of_state<M: Model>(
         residual,
         model_residual,
         velocity_error,
-        fell_back: model_residual.map(|_| fell_back),
         contacts: (0..state.contacts.contacts().len()).filter(in_touch).count() as u32,
         compressive_contacts,
         tensile_contacts,
@@ -332,7 +326,7 @@ mod tests {
 
     /// Columns that the window does not plot.
     const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled residual \
-        model_residual fell_back contacts compressive_contacts tensile_contacts potential_energy normal_work \
+        model_residual contacts compressive_contacts tensile_contacts potential_energy normal_work \
         tangential_work wall_work drive_work border_work gravity_work bond_work drive_energy lost_grains";
 
     #[test]

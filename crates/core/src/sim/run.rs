@@ -89,9 +89,6 @@ pub struct Tally {
     /// Those of them that had stalled, so that more sweeps are of no use.
     #[serde(default)]
     pub stalled_steps: u64,
-    /// Those of them that were solved under bounds of friction instead.
-    #[serde(default)]
-    pub fallback_steps: u64,
     /// Sweeps of all steps.
     pub sweeps: u64,
     /// Largest common residual of any step.
@@ -117,7 +114,6 @@ impl Tally {
         self.steps += 1;
         self.unconverged_steps += u64::from(!step.converged);
         self.stalled_steps += u64::from(step.stalled);
-        self.fallback_steps += u64::from(step.fell_back == Some(true));
         self.sweeps += u64::from(step.sweeps);
         self.largest_residual = worst(self.largest_residual, step.residual);
         self.largest_velocity_error = worst(self.largest_velocity_error, step.velocity_error);

@@ -9,7 +9,7 @@ use crate::setting::{About, Control, Group, Needs, Settable, Value};
 use crate::sim::remedies::{ROWS, Remedies};
 use crate::sim::state::SKIN_IN_DIAMETERS;
 use crate::sim::steppers::Stepper;
-use crate::solver::{Fallback, FrictionModel, METHODS, SolverSettings};
+use crate::solver::{FrictionModel, METHODS, SolverSettings};
 use crate::world::{FrictionCone, Gravity, Motion, Parameters, Periodic, Physics, World};
 
 /// How a simulation steps. Whether its parts go together is checked where a simulation takes them on
@@ -221,9 +221,6 @@ impl Settings {
         let model = self.solver.model(true);
         if model != FrictionModel::Coulomb {
             return refuse("friction-model", model.to_string(), vec!["coulomb"]);
-        }
-        if self.stepper.uses_method() && self.solver.fallback == Fallback::Tresca {
-            return refuse("fallback", Fallback::Tresca.to_string(), vec!["none", "of-method"]);
         }
         if self.remedies.sequential_impacts {
             return refuse("sequential-impacts", "given".into(), vec!["left out"]);

@@ -34,5 +34,5 @@ pub use problem::{
     MovingSurfaces, PairRow, ProblemNumbers, Row, RowVelocities, StepProblem, Surface,
     VelocityError, for_each_row, measure, relative_velocities, residual, velocity_error, worst,
 };
-pub use settings::{Fallback, FrictionModel, SolverChanges, SolverSettings, StopTest};
+pub use settings::{FrictionModel, SolverChanges, SolverSettings, StopTest};
 pub use solve::solve;

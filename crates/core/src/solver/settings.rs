@@ -36,18 +36,6 @@ words! {
     }
 }
 
-words! {
-    /// What becomes of a step whose problem is not solved under Coulomb's law.
-    #[derive(Default)]
-    pub enum Fallback {
-        #[default]
-        OfMethod = "of-method", "tresca where the solver is auto or the scene opens in the window, else none";
-        None = "none", "the impulses that the method came to, unsolved as they are";
-        Tresca = "tresca",
-            "friction bounded by what the method came to, and that problem solved with a certificate";
-    }
-}
-
 impl StopTest {
     /// True where it tells how good a solution is, rather than how much of it a sweep changed.
     pub(crate) fn judges_solutions(self) -> bool {
@@ -142,12 +130,6 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        #[serde(default, skip_serializing_if = "is_default")]
-        fallback: Fallback = Fallback::OfMethod, "fallback" ("MODEL"),
-            "What becomes of a step that is not solved under Coulomb's law", {
-            needs: Needs::Friction,
-            control: shown("Falls back on", "What becomes of a step that is not solved under Coulomb's law."),
-        }
     }
 }
 
@@ -191,7 +173,6 @@ impl SolverSettings {
             warm_start: true,
             friction_model: FrictionModel::Coulomb,
             model_solves: 1,
-            fallback: Fallback::None,
         }
     }
 
@@ -226,19 +207,9 @@ impl SolverSettings {
         }
     }
 
-    /// True where a step that is not solved under Coulomb's law is solved under bounds of friction.
-    pub fn falls_back(&self) -> bool {
-        self.model(false) == FrictionModel::Coulomb
-            && match self.fallback {
-                Fallback::OfMethod => self.method == Method::Auto,
-                Fallback::None => false,
-                Fallback::Tresca => true,
-            }
-    }
-
     /// True where steps may be solved under another model of friction than Coulomb's law.
     pub(crate) fn may_solve_models(&self) -> bool {
-        self.model(false) != FrictionModel::Coulomb || self.falls_back()
+        self.model(false) != FrictionModel::Coulomb
     }
 
     /// The same without a model of friction of its own, which leaves it to the method.

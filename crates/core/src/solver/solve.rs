@@ -1,9 +1,9 @@
 //! Solves a step's problem.
 
 use super::kinematics::Model;
-use super::methods::{Memory, SolveReport, fall_back, solve_by_method};
+use super::methods::{Memory, SolveReport, solve_by_method};
 use super::problem::{StepProblem, is_solved};
-use super::settings::{FrictionModel, SolverSettings};
+use super::settings::SolverSettings;
 
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
 /// the rows' impulses.
@@ -40,17 +40,8 @@ pub fn solve<M: Model>(
     if problem.rows.is_empty() {
         return SolveReport::nothing_yet();
     }
-    if settings.falls_back() && problem.friction.model != FrictionModel::Coulomb {
-        // An earlier solve of the same problem fell back.
-        problem.forget_bounds();
-    }
     let mut report = solve_by_method(problem, memory, settings);
     report.converged &= is_solved(problem, settings);
     report.stalled &= !report.converged;
-    // What solves bounds of friction knows of no walls that a force drives.
-    let falls_back = M::FRICTION && settings.falls_back() && !problem.is_driven();
-    if report.converged || !falls_back {
-        return report;
-    }
-    fall_back(problem, &mut memory.interior_point, report)
+    report
 }

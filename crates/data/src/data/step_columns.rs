@@ -36,12 +36,6 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
         "bound on the velocities' error: root mean square over the grains that touch something",
         Number(|row| row.velocity_error),
     ),
-    column(
-        "fell_back",
-        "1",
-        "1 where it was solved under bounds of friction in the place of Coulomb's law, else 0",
-        SomeNumber(|row| row.fell_back.map(|fell_back| u8::from(fell_back).into())),
-    ),
     column("contacts", "", "contacts", Count(|row| row.contacts.into())),
     column(
         "compressive_contacts",

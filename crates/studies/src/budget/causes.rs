@@ -2,7 +2,7 @@
 
 use crate::scene::{Deposition, NewPile, Scene};
 use crate::sim::{Settings, Stepper};
-use crate::solver::{Fallback, FrictionModel, Method, StopTest};
+use crate::solver::{FrictionModel, Method, SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
 /// Whose share it is.
@@ -82,7 +82,7 @@ pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
 /// How much better steps are solved, to see what they leave unsolved: a bound on velocities of 1e-7 √(g d) is more than
 /// rounding lets some steps have.
 const TIGHTER: f64 = 1e-2;
-/// The residual that Coulomb's law is solved to, to see the same.
+/// The residual that Coulomb's law is solved to, to see the same where a force drives a wall.
 const TIGHTEST_RESIDUAL: f64 = 1e-9;
 /// Below about this many g·Δt restitution stands for no bounce that anyone could see.
 const THRESHOLD: f64 = 2.0;
@@ -102,8 +102,10 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
         }
     };
     if base.stepper.uses_method() {
-        let label = "steps solved 100 times better".into();
-        add(Cause::Unsolved, label, tighter(base, is_driven), 2.0);
+        let settings = tighter(base, is_driven);
+        let certifies = settings.solver.model(is_driven) != base.solver.model(is_driven);
+        let label = if certifies { "steps certified" } else { "steps solved 100 times better" };
+        add(Cause::Unsolved, label.into(), settings, 2.0);
     }
     for divisor in DIVISORS {
         let step = base.parameters.time_step_secs / f64::from(divisor);
@@ -171,13 +173,17 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
 /// The same problems solved so well that nothing is left of them.
 fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     let solver = &mut settings.solver;
-    if solver.model(is_driven) == FrictionModel::Coulomb {
-        // Where Coulomb's law has no solution within reach, bounds of friction have one.
+    if solver.model(is_driven) != FrictionModel::Coulomb {
+        solver.tolerance *= TIGHTER;
+    } else if is_driven {
         (solver.method, solver.friction_model) = (Method::Auto, FrictionModel::Coulomb);
         (solver.stop, solver.tolerance) = (StopTest::Residual, TIGHTEST_RESIDUAL);
-        solver.fallback = if is_driven { Fallback::None } else { Fallback::Tresca };
     } else {
-        solver.tolerance *= TIGHTER;
+        // Coulomb's law has solutions out of reach; within bounds of friction every step has one.
+        *solver = SolverSettings {
+            tolerance: TIGHTER * SolverSettings::DEFAULT.tolerance,
+            ..SolverSettings::DEFAULT
+        };
     }
     solver.max_sweeps = solver.max_sweeps.max(1_000);
     settings

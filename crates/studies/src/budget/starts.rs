@@ -159,8 +159,7 @@ pub(super) fn run(scene: &Scene, quantities: &[Quantity], window: Window) -> Res
         _ if lost > 0 => Some(format!("{lost} grains were lost")),
         _ => None,
     };
-    let unsolved = tally.unconverged_steps - tally.fallback_steps.min(tally.unconverged_steps);
-    let unsolved = unsolved as f64 / tally.steps.max(1) as f64;
+    let unsolved = tally.unconverged_steps as f64 / tally.steps.max(1) as f64;
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     let values = watch.values().into_iter().map(finite).collect();
     Ok(RunValues { values, failure, unsolved, run_secs: begun.elapsed().as_secs_f64() })

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::scene::{Deposition, NewPile, walls};
 use crate::sim::Simulation;
-use crate::solver::{Fallback, FrictionModel, Method, Ordering, SolverSettings, StopTest};
+use crate::solver::{FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::states::States;
 use crate::world::ParameterChanges;
 
@@ -25,7 +25,6 @@ const ADVANCE: SolverSettings = SolverSettings {
     warm_start: true,
     friction_model: FrictionModel::Coulomb,
     model_solves: 1,
-    fallback: Fallback::None,
 };
 
 /// Width of a box over the root of the number of its grains, in diameters: 16 for 138.

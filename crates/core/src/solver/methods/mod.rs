@@ -18,7 +18,6 @@ mod sweep;
 pub(crate) use self::auto::picked;
 pub(crate) use self::contact_system::WorkVectors;
 pub use self::contact_system::{BodySystem, ContactSystem, ScaledVector};
-pub(super) use self::interior_point::fall_back;
 pub use self::nsgs::sweep;
 pub use self::stopping::SolveReport;
 pub(super) use self::stopping::sweep_until_settled;

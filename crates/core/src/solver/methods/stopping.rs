@@ -25,8 +25,6 @@ pub struct SolveReport {
     pub converged: bool,
     /// True where a solve that did not converge had stalled, rather than being stopped too early.
     pub stalled: bool,
-    /// True where a solve that did not converge was ended under bounds of friction instead.
-    pub fell_back: bool,
 }
 
 impl SolveReport {
@@ -35,20 +33,12 @@ impl SolveReport {
         Self { converged: true, ..Self::default() }
     }
 
-    /// True where neither the method nor what it falls back on found a solution.
-    pub(crate) fn is_unsolved(&self) -> bool {
-        !(self.converged || self.fell_back)
-    }
-
-    /// Counts another solve of the same step. The step has stalled where one of them has, and has fallen back where none is
-    /// unsolved.
+    /// Counts another solve of the same step. The step has stalled where one of them has.
     pub fn add(&mut self, other: Self) {
-        let is_any_unsolved = self.is_unsolved() || other.is_unsolved();
         self.sweeps += other.sweeps;
         self.factorisations += other.factorisations;
         self.converged &= other.converged;
         self.stalled |= other.stalled;
-        self.fell_back = (self.fell_back || other.fell_back) && !is_any_unsolved;
     }
 
     /// The same with the work of solves that came before, and of whose outcome nothing is left.
@@ -177,24 +167,6 @@ impl StallWatch {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_step_has_fallen_back_where_all_of_its_solves_that_are_unsolved_did() {
-        let solved = SolveReport { sweeps: 9, converged: true, ..SolveReport::default() };
-        let fallen = SolveReport { sweeps: 3, factorisations: 2, fell_back: true, ..solved };
-        let fallen = SolveReport { converged: false, ..fallen };
-        let left = SolveReport { stalled: true, ..SolveReport::default() };
-        let all = |reports: &[SolveReport]| {
-            let mut all = SolveReport::nothing_yet();
-            reports.iter().for_each(|&report| all.add(report));
-            all
-        };
-        assert_eq!(all(&[solved, fallen, solved]), SolveReport { sweeps: 21, ..fallen });
-        assert_eq!(all(&[solved, solved]), SolveReport { sweeps: 18, ..solved });
-        let unsolved = SolveReport { fell_back: false, stalled: true, sweeps: 12, ..fallen };
-        assert_eq!(all(&[fallen, left, solved]), unsolved);
-        assert_eq!(all(&[left, solved, fallen]), unsolved);
-    }
 
     #[test]
     fn a_step_one_of_whose_solves_stalled_has_stalled() {

@@ -198,12 +198,6 @@ impl<M: Model> StepProblem<M> {
         at_start.clone_from(now);
     }
 
-    /// Bounds friction by what Coulomb's law allows at the present impulses.
-    pub(crate) fn bound_by_present(&mut self) {
-        self.friction.model = FrictionModel::Tresca;
-        self.lag_by(bound);
-    }
-
     /// Goes back to Coulomb's law.
     pub(crate) fn forget_bounds(&mut self) {
         self.friction.model = FrictionModel::Coulomb;

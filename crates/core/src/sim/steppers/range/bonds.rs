@@ -20,8 +20,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::range::{Bond, Opening};
 use crate::sim::settings::Settings;
+use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
-use crate::sim::steppers::range::{StepNumbers, rest_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
@@ -73,7 +73,6 @@ pub(super) fn solve_range<M: Model>(
     let mut round = 0;
     loop {
         round += 1;
-        solver = rest_of(&solver, result.report);
         result.report.add(solve(problem, memory, &solver));
         let limits = BondLimits { bonds: contacts.bonds(), shocks, numbers };
         if round == 1 {

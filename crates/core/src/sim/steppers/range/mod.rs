@@ -27,14 +27,14 @@ use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Fallback, Model, SolveReport, SolverSettings};
+use crate::solver::{Approach, Model, SolveReport, SolverSettings};
 use crate::world::{FrictionCone, Parameters, World};
 
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
     source: "bonds that cost the work C₀δc; shocks apart from loads",
     settings: "bond dt tilt rho mu cone restitution-threshold debonding-distance solver \
-        ordering stop tolerance max-sweeps warm-start friction-model model-solves fallback",
+        ordering stop tolerance max-sweeps warm-start friction-model model-solves",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
     check: |parameters| match parameters.cone {
@@ -139,7 +139,6 @@ pub(super) fn advance<M: Model>(
     let settings = &Settings { solver: SolverSettings { model_solves, ..*solver }, ..*settings };
     let result = stage.in_pieces(substeps, settings, result, |stage, settings, result| {
         prepare(stage, settings);
-        let settings = &Settings { solver: rest_of(&settings.solver, result.report), ..*settings };
         if let Ok(piece) = try_step(stage, settings, memory, true) {
             result.add(piece);
         }
@@ -188,13 +187,6 @@ fn try_step<M: Model>(
     memory.shocks.shift(&mut stage.state.world);
     separate::<M>(stage.state);
     Ok(result)
-}
-
-/// The settings of what is left of a step. Where one of its problems had no solution under bounds of friction either, the
-/// step is unsolved, and to look for those of the others is in vain: that takes up to a thousand factorisations each.
-fn rest_of(settings: &SolverSettings, so_far: SolveReport) -> SolverSettings {
-    let fallback = if so_far.is_unsolved() { Fallback::None } else { settings.fallback };
-    SolverSettings { fallback, ..*settings }
 }
 
 /// The numbers of a step that its shocks and bonds hang on.

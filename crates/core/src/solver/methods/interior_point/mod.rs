@@ -43,7 +43,6 @@ use super::stopping::SolveReport;
 use crate::contact::law;
 use crate::solver::kinematics::Model;
 use crate::solver::linear::ContactGraph;
-use crate::solver::method::Method;
 use crate::solver::problem::{StepProblem, natural_map, velocity_error};
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 use crate::world::FrictionCone;
@@ -57,12 +56,6 @@ const SWEEPS_FROM: f64 = 10.0;
 const LARGEST_IMPULSE: f64 = 1e7;
 /// Sweeps that finish a solve.
 const SWEEPS_LAST: u32 = 2;
-
-/// How well a problem is solved on which a step falls back.
-const CERTIFIED: SolverSettings = SolverSettings {
-    friction_model: FrictionModel::Tresca,
-    ..SolverSettings::to_residual(Method::InteriorPoint, 1e-8, 1_000)
-};
 
 /// The product of slack and multiplier at the start, over the mean square of what the natural map still
 /// changes. Smaller, and contacts that end elsewhere than they began are freed slowly; larger, and a warm
@@ -79,8 +72,6 @@ pub(crate) struct InteriorMemory {
     one: PathWorkspace<1>,
     two: PathWorkspace<2>,
     three: PathWorkspace<3>,
-    /// (σ, λ_t) of the rows of a problem that was not solved under Coulomb's law.
-    unsolved: Vec<[f64; 2]>,
 }
 
 /// What is kept where a body has `D` degrees of freedom.
@@ -130,37 +121,12 @@ fn convex<M: Model, S: Shape>(
     memory: &mut InteriorMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let InteriorMemory { one, two, three, .. } = memory;
+    let InteriorMemory { one, two, three } = memory;
     match M::DEGREES {
         1 => InteriorPoint::<M, S, 1>::new(problem, settings, one).solve_convex(),
         2 => InteriorPoint::<M, S, 2>::new(problem, settings, two).solve_convex(),
         _ => InteriorPoint::<M, S, 3>::new(problem, settings, three).solve_convex(),
     }
-}
-
-/// Puts in the place of what a method came to, which did not solve the problem under Coulomb's law, the solution
-/// under bounds of friction at those impulses. Where that is not found, leaves them as they are.
-///
-/// The bounds are nearer to Coulomb's than those of the step before, on which `tresca` stands.
-pub(in crate::solver) fn fall_back<M: Model>(
-    problem: &mut StepProblem<M>,
-    memory: &mut InteriorMemory,
-    report: SolveReport,
-) -> SolveReport {
-    let mut impulses = std::mem::take(&mut memory.unsolved);
-    problem.rows.read_impulses(&mut impulses);
-    problem.bound_by_present();
-    let mut instead = SolveReport::default();
-    if problem.friction.now.iter().all(|bound| bound.is_finite()) {
-        instead = convex::<M, Strip>(problem, memory, &CERTIFIED);
-    }
-    let fell_back = instead.converged;
-    if !fell_back {
-        problem.forget_bounds();
-        problem.write_impulses(impulses.iter().copied());
-    }
-    memory.unsolved = impulses;
-    SolveReport { converged: false, stalled: report.stalled, fell_back, ..instead.after(report) }
 }
 
 /// Follows the path of Coulomb's law as far as it leads, and has another method go on from there. The

@@ -60,7 +60,7 @@ use glam::DVec2;
 use crate::contact::{Candidates, Contact, ContactList, Impulse};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::range::{StepNumbers, rest_of};
+use crate::sim::steppers::range::StepNumbers;
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{
     Model, Row, SolverSettings, StepProblem, StopTest, for_each_row, velocity_error,
@@ -108,7 +108,6 @@ pub(super) fn pass<M: Model>(
         let all = result.get_or_insert_with(StepResult::nothing_yet);
         for alone in [true, false] {
             if shocks.set_up(problem, part, alone) {
-                let settings = &rest_of(settings, all.report);
                 shocks.solve::<M>(problem, part, memory, settings, alone, all);
             }
         }

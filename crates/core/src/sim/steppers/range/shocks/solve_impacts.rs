@@ -90,7 +90,7 @@ impl Shocks {
         part.bodies.mean_mass = problem.bodies.mean_mass;
         part.law = problem.law.with_capture_speed(0.0);
         part.hold_errors_against(problem);
-        // A solve of other shocks may have fallen back to bounds, which are of those shocks' rows.
+        // Bounds of other shocks are of those shocks' rows.
         part.forget_bounds();
         true
     }
