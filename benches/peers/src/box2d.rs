@@ -8,10 +8,8 @@ use boxdd::{
     WorldBuilder, shapes,
 };
 
-use crate::engine::{Engine, Setting};
-use crate::pile::{AREAL_DENSITY, DIAMETER, FRICTION, GRAVITY, Pile, RESTITUTION};
-
-pub const NAME: &str = "Box2D 3.2 f32";
+use crate::engine::{Engine, SLOP_IN_DIAMETERS, Setting};
+use crate::pile::{AREAL_DENSITY, GRAVITY, Pile};
 
 /// Box2D's slop in its length unit.
 const SLOP: f64 = 0.005;
@@ -26,7 +24,7 @@ pub struct Box2d {
 
 impl Box2d {
     pub fn new(pile: &Pile, setting: Setting) -> boxdd::Result<Self> {
-        let scale = SLOP / (setting.slop * DIAMETER);
+        let scale = SLOP / (SLOP_IN_DIAMETERS * pile.diameter());
         let foundation = Foundation::initialize_default()?;
         let world_def = WorldBuilder::from(foundation.world_def())
             .gravity(Vec2::new(0.0, (-GRAVITY * scale) as f32))
@@ -39,8 +37,9 @@ impl Box2d {
             .enable_continuous(false)
             .build()?;
         let mut world = foundation.create_world(world_def)?;
+        let [friction, restitution] = pile.friction_and_restitution();
         let material =
-            SurfaceMaterial::new().with_friction(FRICTION)?.with_restitution(RESTITUTION)?;
+            SurfaceMaterial::new().with_friction(friction)?.with_restitution(restitution)?;
         let shape = ShapeDef::builder()
             .material(material)
             .density((AREAL_DENSITY / (scale * scale)) as f32)
@@ -53,14 +52,6 @@ impl Box2d {
             let id = world.create_body(body)?;
             let circle = shapes::circle(Vec2::ZERO, (disc.radius * scale) as f32)?;
             world.body(id)?.create_circle(&shape, &circle)?;
-        }
-        for side in pile.walls_at.into_iter().flat_map(|x| [-x, x]) {
-            let body = body().body_type(BodyType::Static).position(place(side, 0.0)).build()?;
-            let id = world.create_body(body)?;
-            // Taller than any pile here.
-            let top = (200.0 * DIAMETER * scale) as f32;
-            let wall = shapes::segment(Vec2::new(0.0, -0.1 * top), Vec2::new(0.0, top))?;
-            world.body(id)?.create_segment(&shape, &wall)?;
         }
         let mut grains = Vec::with_capacity(pile.grains.len());
         for disc in &pile.grains {

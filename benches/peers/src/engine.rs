@@ -1,6 +1,6 @@
 //! What every engine does here.
 
-/// How an engine is set.
+/// How an engine of games is set.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
     /// Time of one call, s.
@@ -9,9 +9,10 @@ pub struct Setting {
     pub substeps: u32,
     /// Stiffness of contacts as a frequency, Hz. Engines lower it where a substep is too long.
     pub contact_hertz: f32,
-    /// Overlap that an engine does not push out, in diameters (its *slop*).
-    pub slop: f64,
 }
+
+/// Overlap that an engine does not push out, in diameters (its *slop*).
+pub const SLOP_IN_DIAMETERS: f64 = 5e-4;
 
 /// A pile in an engine.
 pub trait Engine {

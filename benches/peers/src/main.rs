@@ -1,172 +1,219 @@
-//! Runs the pile without cohesion with other engines and writes what came of it as CSV. See
-//! `README.md`.
+//! Runs the pile without cohesion with other engines and with Slump, and writes what came of it as JSON and as a chart.
+//! See `README.md`.
 
 mod box2d;
+mod draw;
 mod engine;
 mod pile;
 mod rapier;
+mod slump;
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
-use clap::Parser;
 use serde::Serialize;
+use slump_studies::mean;
 
 use engine::{Engine, Setting};
 use pile::Pile;
+use slump::{Slump, Way};
 
+/// Grains, width of their box in diameters, and how many piles.
+const PILES: [(usize, f64, u64); 2] = [(138, 16.0, 8), (2000, 60.0, 1)];
+const COMMAND: &str = "benches/peers/run.sh";
+const DURATION_SECS: f64 = 1.0;
+const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
+const SUBSTEPS: [u32; 3] = [4, 8, 16];
+const CONTACT_HERTZ: [f32; 2] = [960.0, 3840.0];
+const SWEEPS: [u32; 3] = [10, 40, 160];
+/// Runs that the least time is taken of, but for those that take longer than this, s.
+const REPEATS: u32 = 3;
+const LONG_ENOUGH_SECS: f64 = 5.0;
 /// Steps between two looks at positions, which are outside of the clock.
 const STEPS_PER_LOOK: u64 = 10;
 
-/// The pile without cohesion, run by rapier2d and Box2D.
-#[derive(Parser)]
-struct Options {
-    /// Grains at rest, as `slump generate` writes them
-    #[arg(long, value_name = "FILE", default_value = "../../assets/pile_138.csv")]
-    initial: PathBuf,
-    /// Width of the box that they were rained into, in diameters
-    #[arg(long, default_value_t = 16.0)]
-    box_width: f64,
-    /// Leave the walls standing: the pile stays at rest
-    #[arg(long)]
-    rest: bool,
-    /// Simulated time, s
-    #[arg(long, default_value_t = 1.0)]
-    duration: f64,
-    /// Time steps, s
-    #[arg(long, value_delimiter = ',', default_value = "1e-3,5e-3")]
-    dt: Vec<f64>,
-    /// Substeps of a step
-    #[arg(long, value_delimiter = ',', default_value = "4,16")]
-    substeps: Vec<u32>,
-    /// Stiffness of contacts, Hz
-    #[arg(long, value_delimiter = ',', default_value = "960,3840")]
-    contact_hertz: Vec<f32>,
-    /// Overlaps that are not pushed out, in diameters
-    #[arg(long, value_delimiter = ',', default_value = "5e-3,5e-4")]
-    slop: Vec<f64>,
-    /// Runs that the least time is taken of
-    #[arg(long, default_value_t = 3)]
-    repeats: u32,
-    /// The table to write
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
+/// What is compared, and the curve of the chart that it is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+enum Series {
+    #[serde(rename = "rapier2d 0.36 f32")]
+    Rapier,
+    #[serde(rename = "Box2D 3.2 f32")]
+    Box2d,
+    #[serde(rename = "sweeps")]
+    Sweeps,
+    #[serde(rename = "sweeps, push-out")]
+    PushOut,
+    #[serde(rename = "tgs-soft")]
+    TgsSoft,
+    #[serde(rename = "certified")]
+    Certified,
 }
 
-/// A row of the table.
+/// All that was measured.
+#[derive(Serialize)]
+struct Report {
+    command: &'static str,
+    processor: String,
+    date: String,
+    rows: Vec<Row>,
+}
+
+/// An engine with a setting, at a Δt: means over the piles.
 #[derive(Serialize)]
 struct Row {
-    engine: &'static str,
-    scene: &'static str,
+    series: Series,
+    setting: String,
     grains: usize,
+    piles: usize,
     time_step_secs: f64,
-    substeps: u32,
-    contact_hertz: f32,
-    slop: f64,
     /// Δy_G at the end.
     slump: f64,
+    /// Half of its 95 % interval; none of one pile.
+    slump_within: Option<f64>,
     /// Mean over the looks of the mean overlap of touching grains, in diameters.
     mean_overlap: f64,
-    /// Largest overlap at any look, in diameters.
+    /// Largest overlap at any look at any pile, in diameters.
     max_overlap: f64,
     secs_per_simulated_sec: f64,
     ms_per_step: f64,
-    processor: String,
-    date: String,
 }
+
+/// An engine with its setting.
+struct Compared {
+    series: Series,
+    setting: String,
+    make: Box<Make>,
+}
+
+/// Puts a pile into an engine, for steps of so many seconds.
+type Make = dyn Fn(&Pile, f64) -> Result<Box<dyn Engine>, Box<dyn Error>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse();
-    let pile = Pile::read(&options.initial, options.box_width, options.rest)?;
-    let mut writer = csv::Writer::from_path(&options.out)?;
-    for setting in settings(&options) {
-        let rapier = || Ok(rapier::Rapier::new(&pile, setting));
-        tell(&mut writer, measured(rapier::NAME, &pile, setting, &options, rapier)?)?;
-        let box2d = || Ok(box2d::Box2d::new(&pile, setting)?);
-        tell(&mut writer, measured(box2d::NAME, &pile, setting, &options, box2d)?)?;
+    let mut rows = Vec::new();
+    for (grains, width, count) in PILES {
+        let rained = |seed| Pile::rained(grains, width, seed);
+        let piles: Vec<Pile> = (1..=count).map(rained).collect::<Result<_, _>>()?;
+        for time_step_secs in TIME_STEPS_SECS {
+            for compared in compared() {
+                let row = measured(&compared, &piles, time_step_secs)?;
+                println!(
+                    "{}, {}, {grains} grains, dt {time_step_secs:e}: slump {:.3}, overlap {:.2e}, {:.3} s a simulated second",
+                    name_of(row.series),
+                    row.setting,
+                    row.slump,
+                    row.mean_overlap,
+                    row.secs_per_simulated_sec
+                );
+                rows.push(row);
+            }
+        }
     }
-    println!("{}", options.out.display());
+    let date = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
+    let report = Report { command: COMMAND, processor: processor(), date, rows };
+    let picture = draw::png(&report)?;
+    for (name, bytes) in
+        [("dry-pile.json", serde_json::to_vec_pretty(&report)?), ("chart-engines.png", picture)]
+    {
+        let path = Path::new("results").join(name);
+        std::fs::write(&path, bytes)?;
+        println!("{}", path.display());
+    }
     Ok(())
 }
 
-/// Every combination of what the options list.
-fn settings(options: &Options) -> Vec<Setting> {
-    let mut settings = Vec::new();
-    for &time_step_secs in &options.dt {
-        for &substeps in &options.substeps {
-            for &contact_hertz in &options.contact_hertz {
-                for &slop in &options.slop {
-                    settings.push(Setting { time_step_secs, substeps, contact_hertz, slop });
+/// Every engine with each of its settings.
+fn compared() -> Vec<Compared> {
+    let mut all = Vec::new();
+    for substeps in SUBSTEPS {
+        for contact_hertz in CONTACT_HERTZ {
+            let of = move |time_step_secs| Setting { time_step_secs, substeps, contact_hertz };
+            let setting = format!("{substeps} substeps, {contact_hertz} Hz");
+            all.push(Compared {
+                series: Series::Rapier,
+                setting: setting.clone(),
+                make: Box::new(move |pile, step| Ok(Box::new(rapier::Rapier::new(pile, of(step))))),
+            });
+            all.push(Compared {
+                series: Series::Box2d,
+                setting,
+                make: Box::new(move |pile, step| Ok(Box::new(box2d::Box2d::new(pile, of(step))?))),
+            });
+        }
+    }
+    let mut own = |series, setting: String, way| {
+        let make = move |pile: &Pile, step| -> Result<Box<dyn Engine>, Box<dyn Error>> {
+            Ok(Box::new(Slump::new(pile, step, way)?))
+        };
+        all.push(Compared { series, setting, make: Box::new(make) });
+    };
+    for count in SWEEPS {
+        for (series, push_out) in [(Series::Sweeps, false), (Series::PushOut, true)] {
+            own(series, format!("{count} sweeps"), Way::Sweeps { count, push_out });
+        }
+    }
+    for substeps in SUBSTEPS {
+        own(Series::TgsSoft, format!("{substeps} substeps"), Way::TgsSoft { substeps });
+    }
+    own(Series::Certified, "the default".into(), Way::Certified { push_out: false });
+    own(Series::Certified, "push-out".into(), Way::Certified { push_out: true });
+    all
+}
+
+/// The name that tables have for it.
+fn name_of(series: Series) -> String {
+    serde_json::to_value(series)
+        .ok()
+        .and_then(|name| name.as_str().map(str::to_owned))
+        .unwrap_or_default()
+}
+
+fn measured(
+    compared: &Compared,
+    piles: &[Pile],
+    time_step_secs: f64,
+) -> Result<Row, Box<dyn Error>> {
+    let steps = (DURATION_SECS / time_step_secs).round() as u64;
+    let (mut slumps, mut overlaps, mut max_overlap, mut secs) = (Vec::new(), Vec::new(), 0f64, 0.0);
+    for pile in piles {
+        let mut least_secs = f64::INFINITY;
+        for repeat in 0..REPEATS {
+            let mut engine = (compared.make)(pile, time_step_secs)?;
+            let mut run_secs = 0.0;
+            for step in 1..=steps {
+                let started = Instant::now();
+                engine.step();
+                run_secs += started.elapsed().as_secs_f64();
+                // All repeats are the same.
+                if repeat == 0 && (step % STEPS_PER_LOOK == 0 || step == steps) {
+                    let (mean, largest) = pile.overlaps(&engine.positions());
+                    overlaps.push(mean);
+                    max_overlap = max_overlap.max(largest);
                 }
             }
-        }
-    }
-    settings
-}
-
-fn tell(writer: &mut csv::Writer<std::fs::File>, row: Row) -> Result<(), Box<dyn Error>> {
-    println!(
-        "{}, {}, {} grains, dt {:e}, {} substeps, {} Hz, slop {:e}: slump {:.3}, overlap {:.2e}, {:.4} ms a step",
-        row.engine,
-        row.scene,
-        row.grains,
-        row.time_step_secs,
-        row.substeps,
-        row.contact_hertz,
-        row.slop,
-        row.slump,
-        row.mean_overlap,
-        row.ms_per_step
-    );
-    writer.serialize(row)?;
-    writer.flush()?;
-    Ok(())
-}
-
-fn measured<E: Engine>(
-    engine: &'static str,
-    pile: &Pile,
-    setting: Setting,
-    options: &Options,
-    make: impl Fn() -> Result<E, Box<dyn Error>>,
-) -> Result<Row, Box<dyn Error>> {
-    let steps = (options.duration / setting.time_step_secs).round() as u64;
-    let mut least_secs = f64::INFINITY;
-    let (mut slump, mut mean_overlap, mut max_overlap) = (0.0, 0.0, 0f64);
-    for _ in 0..options.repeats {
-        let mut world = make()?;
-        let (mut secs, mut overlaps, mut looks) = (0.0, 0.0, 0);
-        for step in 1..=steps {
-            let started = Instant::now();
-            world.step();
-            secs += started.elapsed().as_secs_f64();
-            if step % STEPS_PER_LOOK == 0 || step == steps {
-                let (mean, largest) = pile.overlaps(&world.positions());
-                overlaps += mean;
-                looks += 1;
-                max_overlap = max_overlap.max(largest);
+            if repeat == 0 {
+                slumps.push(pile.slump(&engine.positions()));
+            }
+            least_secs = f64::min(least_secs, run_secs);
+            if run_secs > LONG_ENOUGH_SECS {
+                break;
             }
         }
-        slump = pile.slump(&world.positions());
-        mean_overlap = overlaps / f64::from(looks);
-        least_secs = f64::min(least_secs, secs);
+        secs += least_secs / piles.len() as f64;
     }
+    let slump = mean(&slumps);
     Ok(Row {
-        engine,
-        scene: if options.rest { "rest" } else { "collapse" },
-        grains: pile.grains.len(),
-        time_step_secs: setting.time_step_secs,
-        substeps: setting.substeps,
-        contact_hertz: setting.contact_hertz,
-        slop: setting.slop,
-        slump,
-        mean_overlap,
+        series: compared.series,
+        setting: compared.setting.clone(),
+        grains: piles[0].grains.len(),
+        piles: piles.len(),
+        time_step_secs,
+        slump: slump.mean,
+        slump_within: (piles.len() > 1).then_some(slump.high - slump.mean),
+        mean_overlap: mean(&overlaps).mean,
         max_overlap,
-        secs_per_simulated_sec: least_secs / options.duration,
-        ms_per_step: 1e3 * least_secs / steps as f64,
-        processor: processor(),
-        date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
+        secs_per_simulated_sec: secs / DURATION_SECS,
+        ms_per_step: 1e3 * secs / steps as f64,
     })
 }
 

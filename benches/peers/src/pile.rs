@@ -1,23 +1,15 @@
 //! The pile without cohesion: the same grains, base and numbers as in Slump.
 
-use std::error::Error;
-use std::path::Path;
+use slump_core::error::Result;
+use slump_core::scene::{NewPile, Scene, pile_of, settle};
 
-use serde::Deserialize;
-
-/// d, m.
-pub const DIAMETER: f64 = 5e-3;
 /// g, m/s².
 pub const GRAVITY: f64 = 9.8;
-/// μ.
-pub const FRICTION: f32 = 0.5;
-/// ρ.
-pub const RESTITUTION: f32 = 0.1;
 /// σ, kg/m².
 pub const AREAL_DENSITY: f64 = 1.0;
 
 /// A disc, m.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct Disc {
     pub x: f64,
     pub y: f64,
@@ -27,24 +19,33 @@ pub struct Disc {
 /// Grains, and what stands still.
 #[derive(Clone, Debug)]
 pub struct Pile {
+    /// The pile as Slump runs it.
+    pub scene: Scene,
     pub grains: Vec<Disc>,
     /// The rough base.
     pub base: Vec<Disc>,
-    /// Where walls stand, at ± this x, m.
-    pub walls_at: Option<f64>,
 }
 
 impl Pile {
-    /// Reads the grains that `slump generate` wrote for a box of that width. The base is Slump's.
-    pub fn read(path: &Path, box_width: f64, walls: bool) -> Result<Self, Box<dyn Error>> {
-        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path)?;
-        let grains: Vec<Disc> = reader.deserialize().collect::<Result<_, _>>()?;
-        let height = grains.iter().map(|disc| disc.y).fold(0.0, f64::max) / DIAMETER;
-        let half = (0.5 * (box_width + 10.0 * height)).ceil() as i64;
-        let base = (-half..=half)
-            .map(|k| Disc { x: k as f64 * DIAMETER, y: 0.0, radius: 0.5 * DIAMETER })
-            .collect();
-        Ok(Self { grains, base, walls_at: walls.then_some(0.5 * box_width * DIAMETER) })
+    /// Rains grains into a box, and takes its walls away.
+    pub fn rained(grains: usize, box_width_in_diameters: f64, seed: u64) -> Result<Self> {
+        let made_as = NewPile { grains, box_width_in_diameters, seed, ..NewPile::default() };
+        let mut scene = pile_of(settle(&made_as, |_| true)?, box_width_in_diameters)?;
+        scene.parameters.bond = 0.0;
+        let disc = |position: glam::DVec2, radius| Disc { x: position.x, y: position.y, radius };
+        let grains = scene.grains.iter().map(|grain| disc(grain.position, grain.radius)).collect();
+        let base = scene.fixed_discs.iter().map(|one| disc(one.position, one.radius)).collect();
+        Ok(Self { scene, grains, base })
+    }
+
+    /// d, m.
+    pub fn diameter(&self) -> f64 {
+        self.scene.mean_diameter
+    }
+
+    /// μ and ρ.
+    pub fn friction_and_restitution(&self) -> [f32; 2] {
+        [self.scene.parameters.friction as f32, self.scene.parameters.restitution as f32]
     }
 
     /// Δy_G: the relative drop of the mean height.
@@ -73,6 +74,6 @@ impl Pile {
                 }
             }
         }
-        (sum / f64::from(count.max(1)) / DIAMETER, largest / DIAMETER)
+        (sum / f64::from(count.max(1)) / self.diameter(), largest / self.diameter())
     }
 }

@@ -2,10 +2,8 @@
 
 use rapier2d::prelude::*;
 
-use crate::engine::{Engine, Setting};
-use crate::pile::{AREAL_DENSITY, Disc, FRICTION, GRAVITY, Pile, RESTITUTION};
-
-pub const NAME: &str = "rapier2d 0.36 f32";
+use crate::engine::{Engine, SLOP_IN_DIAMETERS, Setting};
+use crate::pile::{AREAL_DENSITY, Disc, GRAVITY, Pile};
 
 /// How far ahead of touching contacts are made, in diameters. Tied to the slop, as it is by default,
 /// fast grains would be met late where the slop is small.
@@ -26,7 +24,7 @@ impl Rapier {
             damping_ratio,
         };
         // Every length of the engine scales with this unit; its slop is what is asked for.
-        let slop = (setting.slop * crate::pile::DIAMETER) as f32;
+        let slop = (SLOP_IN_DIAMETERS * pile.diameter()) as f32;
         let length_unit = slop / defaults.normalized_allowed_linear_error;
         world.integration_parameters = IntegrationParameters {
             dt: setting.time_step_secs as f32,
@@ -34,29 +32,23 @@ impl Rapier {
             contact_softness: stiff(defaults.contact_softness.damping_ratio),
             static_contact_softness: stiff(defaults.static_contact_softness.damping_ratio),
             length_unit,
-            normalized_prediction_distance: (PREDICTION / setting.slop) as f32
+            normalized_prediction_distance: (PREDICTION / SLOP_IN_DIAMETERS) as f32
                 * defaults.normalized_allowed_linear_error,
             // Without these two bounds, which would also shrink with the unit.
             normalized_max_corrective_velocity: f32::MAX,
             normalized_max_linear_velocity: f32::MAX,
             ..defaults
         };
+        let [friction, restitution] = pile.friction_and_restitution();
         let ball = |disc: &Disc| {
             ColliderBuilder::ball(disc.radius as f32)
                 .density(AREAL_DENSITY as f32)
-                .friction(FRICTION)
-                .restitution(RESTITUTION)
+                .friction(friction)
+                .restitution(restitution)
         };
         for disc in &pile.base {
             let place = Vector::new(disc.x as f32, disc.y as f32);
             world.insert_collider(ball(disc).translation(place), None);
-        }
-        for side in pile.walls_at.into_iter().flat_map(|x| [-x, x]) {
-            let inward = if side < 0.0 { Vector::X } else { -Vector::X };
-            let wall = ColliderBuilder::new(SharedShape::halfspace(inward));
-            let place = Vector::new(side as f32, 0.0);
-            let wall = wall.translation(place).friction(FRICTION).restitution(RESTITUTION);
-            world.insert_collider(wall, None);
         }
         let grains = pile
             .grains

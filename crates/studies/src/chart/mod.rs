@@ -3,8 +3,10 @@
 
 mod draw;
 mod even_lines;
+mod fronts;
 
 pub use draw::{png, svg};
+pub use fronts::{end_labels, pareto_front};
 
 use crate::error::{Error, Result};
 
@@ -146,12 +148,7 @@ impl Layer {
     }
 
     /// A curve that the legend leaves out.
-    pub(crate) fn quiet(
-        name: impl Into<String>,
-        points: Vec<Point>,
-        colour: Rgb,
-        look: Look,
-    ) -> Self {
+    pub fn quiet(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
         Self::Curve { name: name.into(), in_legend: false, points, colour, look, aside: 0.0 }
     }
 }

@@ -1,5 +1,4 @@
-//! How methods are compared over many problems, some of which some methods fail on: means with failures, and the front
-//! of what nothing beats.
+//! How methods are compared over many problems, some of which some methods fail on: means with failures.
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Timing {
@@ -44,27 +43,6 @@ pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> Option<f64> {
     geometric_mean(pairs.map(|(base, method)| base.secs / method.secs))
 }
 
-/// The points (speed, error) that no other beats in both, by rising speed. Of equal ones the first
-/// is kept.
-pub(super) fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    // Fastest first; of equally fast ones the most accurate first.
-    order.sort_by(|&one, &other| {
-        let ((speed, error), (other_speed, other_error)) = (points[one], points[other]);
-        other_speed.total_cmp(&speed).then(error.total_cmp(&other_error))
-    });
-    let mut front = Vec::new();
-    let mut least_error = f64::INFINITY;
-    for index in order {
-        if points[index].1 < least_error {
-            least_error = points[index].1;
-            front.push(index);
-        }
-    }
-    front.reverse();
-    front
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,13 +75,5 @@ mod tests {
         // √(4 · 50)
         assert!((ratio - 200f64.sqrt()).abs() < 1e-12);
         assert_eq!(speed_ratio(&base, &[failed(1.0); 4]), None);
-    }
-
-    #[test]
-    fn the_front_holds_what_nothing_beats() {
-        let points = [(1.0, 0.1), (2.0, 0.2), (1.5, 0.3), (4.0, 0.2), (0.5, 0.1), (5.0, 0.9)];
-        assert_eq!(pareto_front(&points), [0, 3, 5]);
-        assert_eq!(pareto_front(&[(1.0, 1.0), (1.0, 1.0)]), [0]);
-        assert!(pareto_front(&[]).is_empty());
     }
 }

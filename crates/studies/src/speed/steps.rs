@@ -5,9 +5,9 @@ use super::performance::{Timing, geometric_mean, median_with_failures, share_sol
 use super::solves::{
     LEAST_REPEATS, LONG_SOLVE_SECS, MOST_SWEEPS, ROUNDING, SolveTimer, TimedSolves,
 };
-use super::variants::{self, ChartedVariant, Family, end_labels};
+use super::variants::{self, ChartedVariant, Family};
 use super::{Bench, ChartSection};
-use crate::chart::{Axis, Chart, Layer, Look, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, Sheet, end_labels, points};
 use crate::error::Result;
 use crate::report::ReportTable;
 use crate::runner::{Case, Runner, Threads};
@@ -177,6 +177,7 @@ impl TimedCollection {
 
 fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> Sheet {
     let tightest = goals.iter().copied().fold(1.0, f64::min);
+    let loosest = goals.iter().copied().fold(0.0, f64::max);
     let mut charts = Vec::new();
     for timed in all {
         let curves = Family::ALL.map(|family| (family, timed.medians(family, goals)));
@@ -187,7 +188,8 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
             timed.title.clone(),
             // Room for the names of curves.
             Axis::log("time of a step (ms)", 0.7 * least, 8.0 * most),
-            Axis::log("residual", 0.4 * tightest, 0.2),
+            // Room for names above, too.
+            Axis::log("residual", 0.4 * tightest, 10.0 * loosest),
         );
         let mut ends = Vec::new();
         for (family, curve) in curves {
@@ -196,7 +198,8 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
             let (name, curve) = (family.name(), points(curve));
             chart.layers.push(Layer::quiet(name, curve, family.colour(), Look::LineAndDots));
         }
-        chart.layers.extend(end_labels(ends));
+        let labels = end_labels(&chart, ends);
+        chart.layers.extend(labels);
         charts.push(chart);
     }
     let charted = all.first().map_or(&[][..], |timed| &timed.variants);

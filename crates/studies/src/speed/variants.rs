@@ -1,6 +1,6 @@
 //! The solver variants that are charted: every method of the registry with its settings.
 
-use crate::chart::{Layer, PALETTE, Rgb};
+use crate::chart::{PALETTE, Rgb};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
@@ -52,20 +52,6 @@ pub(super) fn members(variants: &[ChartedVariant]) -> String {
     };
     let all: Vec<String> = Family::ALL.into_iter().filter_map(of).collect();
     format!("{}.", all.join("; "))
-}
-
-/// Least factor between two labels, on a logarithmic axis.
-const APART: f64 = 1.45;
-
-/// Words beside the ends of curves, moved apart where those are close.
-pub(super) fn end_labels(mut ends: Vec<(String, Rgb, (f64, f64))>) -> Vec<Layer> {
-    ends.sort_by(|(.., one), (.., other)| one.1.total_cmp(&other.1));
-    let mut last = 0.0;
-    let label = |(text, colour, (x, y))| {
-        last = f64::max(y, last * APART);
-        Layer::Words { at: (1.18 * x, last), text, colour }
-    };
-    ends.into_iter().map(label).collect()
 }
 
 /// A method with its settings, or a stepper that has none, as it is charted.
@@ -181,17 +167,5 @@ mod tests {
         names.sort();
         names.dedup();
         assert_eq!(names.len(), count);
-    }
-
-    #[test]
-    fn labels_of_curves_that_end_together_stand_apart() {
-        let of = |family: Family| (family.name().to_owned(), family.colour(), (1.0, 0.01));
-        let ends = Family::ALL.map(of).to_vec();
-        let labels = end_labels(ends);
-        let heights: Vec<f64> = labels
-            .iter()
-            .filter_map(|label| if let Layer::Words { at, .. } = label { Some(at.1) } else { None })
-            .collect();
-        assert!(heights.windows(2).all(|pair| pair[1] >= 1.4 * pair[0]), "{heights:?}");
     }
 }

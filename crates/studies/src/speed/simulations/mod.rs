@@ -12,10 +12,9 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::performance::pareto_front;
-use super::variants::{self, ChartedVariant, Family, end_labels};
+use super::variants::{self, ChartedVariant, Family};
 use super::{Bench, ChartSection, listed};
-use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, end_labels, pareto_front, points};
 use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
 use crate::number;

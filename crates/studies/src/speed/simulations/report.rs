@@ -94,7 +94,8 @@ fn with_errors(
         ends.extend(front.last().map(|end| (said, colour, (end.x, end.y))));
         chart.layers.push(Layer::quiet(name, front, colour, Look::LineAndDots));
     }
-    chart.layers.extend(end_labels(ends));
+    let labels = end_labels(&chart, ends);
+    chart.layers.extend(labels);
     chart
 }
 

@@ -1,0 +1,54 @@
+//! Slump's own ways to step.
+
+use slump_core::error::Result;
+use slump_core::sim::{Remedies, Simulation, Stepper};
+use slump_core::solver::{Method, SolverSettings};
+
+use crate::engine::Engine;
+use crate::pile::Pile;
+
+/// A way to step, in words, and what it sets.
+#[derive(Clone, Copy, Debug)]
+pub enum Way {
+    /// The paper's scheme with so many sweeps a step.
+    Sweeps { count: u32, push_out: bool },
+    /// The default: every step certified.
+    Certified { push_out: bool },
+    /// Soft contacts with substeps.
+    TgsSoft { substeps: u32 },
+}
+
+pub struct Slump(Simulation);
+
+impl Slump {
+    pub fn new(pile: &Pile, time_step_secs: f64, way: Way) -> Result<Self> {
+        let mut scene = pile.scene.clone();
+        scene.parameters.time_step_secs = time_step_secs;
+        match way {
+            Way::Sweeps { count, push_out } => {
+                // No residual is as small as this, so that all sweeps are taken.
+                scene.solver = SolverSettings::to_residual(Method::Nsgs, f64::MIN_POSITIVE, count);
+                scene.remedies = Remedies { push_out, ..Remedies::default() };
+            }
+            Way::Certified { push_out } => {
+                scene.remedies = Remedies { push_out, ..Remedies::default() };
+            }
+            Way::TgsSoft { substeps } => {
+                scene.stepper = Stepper::TgsSoft;
+                scene.parameters.substeps = substeps;
+            }
+        }
+        Ok(Self(scene.simulation()?))
+    }
+}
+
+impl Engine for Slump {
+    fn step(&mut self) {
+        // A dry pile under these settings stays finite, and one that did not would be seen in the table.
+        self.0.step().expect("a finite state");
+    }
+
+    fn positions(&mut self) -> Vec<[f64; 2]> {
+        self.0.world().grains.positions.iter().map(|at| [at.x, at.y]).collect()
+    }
+}

@@ -1,0 +1,77 @@
+//! What charts of cost and error have in common: fronts, and names at the ends of curves.
+
+use super::{Axis, Chart, Layer, Rgb};
+
+/// The points (speed, error) that no other beats in both, by rising speed. Of equal ones the first
+/// is kept.
+pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    // Fastest first; of equally fast ones the most accurate first.
+    order.sort_by(|&one, &other| {
+        let ((speed, error), (other_speed, other_error)) = (points[one], points[other]);
+        other_speed.total_cmp(&speed).then(error.total_cmp(&other_error))
+    });
+    let mut front = Vec::new();
+    let mut least_error = f64::INFINITY;
+    for index in order {
+        if points[index].1 < least_error {
+            least_error = points[index].1;
+            front.push(index);
+        }
+    }
+    front.reverse();
+    front
+}
+
+/// Length of a character of a label, and the height of labels, in those of a chart.
+const CHARACTER: f64 = 0.018;
+const HIGH: f64 = 0.05;
+
+/// Words beside the ends of curves on logarithmic axes: to the right of what ends close by, and moved apart.
+pub fn end_labels(chart: &Chart, mut ends: Vec<(String, Rgb, (f64, f64))>) -> Vec<Layer> {
+    let part = |axis: &Axis, share: f64| (axis.to / axis.from).powf(share);
+    let high = part(&chart.y, HIGH);
+    ends.sort_by(|(.., one), (.., other)| one.1.total_cmp(&other.1));
+    let all: Vec<(f64, f64)> = ends.iter().map(|(.., end)| *end).collect();
+    let mut last = 0.0;
+    let label = |(text, colour, (x, y)): (String, Rgb, (f64, f64))| {
+        last = f64::max(y, last * high);
+        let long = part(&chart.x, CHARACTER * (text.chars().count() + 1) as f64);
+        let is_in_the_way = |(other_x, other_y): &&(f64, f64)| {
+            (1.0..long).contains(&(other_x / x)) && (last / high..last * high).contains(other_y)
+        };
+        let behind = all.iter().filter(is_in_the_way).map(|(other_x, _)| *other_x);
+        Layer::Words { at: (1.18 * behind.fold(x, f64::max), last), text, colour }
+    };
+    ends.into_iter().map(label).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PALETTE;
+    use super::*;
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let points = [(1.0, 0.1), (2.0, 0.2), (1.5, 0.3), (4.0, 0.2), (0.5, 0.1), (5.0, 0.9)];
+        assert_eq!(pareto_front(&points), [0, 3, 5]);
+        assert_eq!(pareto_front(&[(1.0, 1.0), (1.0, 1.0)]), [0]);
+        assert!(pareto_front(&[]).is_empty());
+    }
+
+    #[test]
+    fn labels_of_curves_that_end_together_stand_apart_and_beside_all_of_them() {
+        let axis = || Axis::log("", 1e-4, 1e4);
+        let chart = Chart::new("", axis(), axis());
+        let ends = PALETTE.map(|colour| ("one".to_owned(), colour, (1.0, 0.01)));
+        let near = ("near".to_owned(), PALETTE[0], (3.0, 0.01));
+        let labels = end_labels(&chart, ends.into_iter().chain([near]).collect());
+        let places = labels.iter().filter_map(|label| match label {
+            Layer::Words { at, .. } => Some(*at),
+            _ => None,
+        });
+        let places: Vec<(f64, f64)> = places.collect();
+        assert!(places.windows(2).all(|pair| pair[1].1 >= 2.4 * pair[0].1), "{places:?}");
+        assert!(places[0].0 > 3.0, "{places:?}");
+    }
+}
