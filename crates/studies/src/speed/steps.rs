@@ -189,7 +189,7 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
             // Room for the names of curves.
             Axis::log("time of a step (ms)", 0.7 * least, 8.0 * most),
             // Room for names above, too.
-            Axis::log("residual", 0.4 * tightest, 10.0 * loosest),
+            Axis::log("residual", 0.4 * tightest, 8.0 * loosest),
         );
         let mut ends = Vec::new();
         for (family, curve) in curves {
