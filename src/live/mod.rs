@@ -16,7 +16,9 @@ mod remote;
 mod stored_moments;
 mod world_history;
 
+#[cfg(feature = "panels")]
 pub(crate) use clock::receive_within;
+#[cfg(feature = "panels")]
 pub(crate) use command::as_json;
 pub use command::{
     Command, LiveStart, LoadingProgress, Pace, Preview, StartSource, StartTaker, Taker, Tell,
