@@ -282,6 +282,21 @@ mod tests {
     }
 
     #[test]
+    fn what_steps_leave_unsolved_is_held_against_steps_that_are_solved_for_certain() {
+        for (solver, label) in [
+            (SolverSettings::default(), "steps solved 100 times better"),
+            (SolverSettings::PAPER, "steps certified"),
+        ] {
+            let mut pile = built_in("pile").unwrap();
+            pile.solver = solver;
+            let all = variants(&pile, None, false);
+            let better = all.iter().find(|variant| variant.cause == Cause::Unsolved).unwrap();
+            assert_eq!(better.label, label);
+            assert_eq!(better.settings.solver.model(false), FrictionModel::Tresca);
+        }
+    }
+
+    #[test]
     fn other_laws_take_as_much_work_to_break_a_bond() {
         let mut scene = built_in("pile").unwrap();
         scene.parameters.bond = 20.0;
