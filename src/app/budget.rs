@@ -60,8 +60,8 @@ pub(super) const PAPER: Budget = Budget {
 /// Coulomb's law itself.
 pub(super) const COULOMB: Budget = Budget {
     name: "Coulomb",
-    hint: "Coulomb's law itself, by Newton's method: some steps have no solution that it finds. Slumps are those of \
-           Certified, at a higher cost.",
+    hint: "Coulomb's law itself, by Newton's method, at a higher cost than Certified. For some steps it finds no \
+           solution, and strong piles feel what is left of these.",
     settings: SolverSettings {
         friction_model: FrictionModel::Coulomb,
         max_sweeps: 500,
@@ -74,7 +74,7 @@ pub(super) const COULOMB: Budget = Budget {
 pub(super) const CERTIFIED: Budget = Budget {
     name: "Certified",
     hint: "Each step is solved within bounds of friction that a first solve gives (tresca), and velocities are \
-           certain to 1e-4 of the root of g d. Slumps are those of Coulomb's law.",
+           certain to 1e-4 of the root of g d. Slumps are those of Coulomb's law where that is solved.",
     settings: SolverSettings::DEFAULT,
     is_certain: true,
 };
