@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use slump_studies::chart::{
-    Axis, Chart, Layer, Look, PALETTE, Point, Sheet, end_labels, pareto_front, png as png_of,
+    Axis, Chart, Layer, Look, PALETTE, Point, Sheet, pareto_front, png as png_of,
 };
 
 use crate::{PILES, Report, Row, Series, name_of};
@@ -59,7 +59,6 @@ fn panel(rows: &[&Row]) -> Chart {
         ends.extend(front.last().map(|end| (name.clone(), colour, (end.x, end.y))));
         chart.layers.push(Layer::quiet(name, front, colour, Look::LineAndDots));
     }
-    let labels = end_labels(&chart, ends);
-    chart.layers.extend(labels);
+    chart.add_end_labels(ends);
     chart
 }

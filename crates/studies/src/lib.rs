@@ -11,6 +11,7 @@ use slump_data::{column_spec, config, data, granular, input, output};
 mod budget;
 pub mod chart;
 mod figures;
+mod fracture_work;
 mod journal;
 mod machine;
 mod means;

@@ -1,5 +1,6 @@
 //! What a number may owe itself to, in a scene: which of it can matter there, and how it is tried.
 
+use crate::fracture_work::{fracture_work, with_fracture_work};
 use crate::scene::{Deposition, NewPile, Scene};
 use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, Method, SolverSettings, StopTest};
@@ -192,34 +193,16 @@ fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
 /// Another contact law, under which it takes as much work to break a bond as under the scene's own; where that knows no
 /// such work, as under `range` with the debonding distance that the scene has.
 fn at_equal_work(scene: &Scene, stepper: Stepper) -> Settings {
-    let mut settings = Settings { stepper, ..scene.settings() }.with_only_what_is_taken();
+    let settings = Settings { stepper, ..scene.settings() }.with_only_what_is_taken();
     if !(scene.physics.cohesion && settings.parameters.bond > 0.0) {
         return settings;
     }
-    let work = |settings: Settings| {
-        let mut scene = scene.clone();
-        scene.set_settings(settings);
-        Some(scene.simulation().ok()?.fracture_work()?.joules).filter(|work| *work > 0.0)
+    let of_range = || {
+        let range = Settings { stepper: Stepper::Range, ..scene.settings() };
+        fracture_work(scene, range.with_only_what_is_taken())
     };
-    let own = work(scene.settings());
-    let target = own.or_else(|| {
-        work(Settings { stepper: Stepper::Range, ..scene.settings() }.with_only_what_is_taken())
-    });
-    match (stepper, target) {
-        (Stepper::Dem, Some(target)) => {
-            // W = C₀²/2k: the work at a stiffness of 1 N/m tells k.
-            settings.parameters.stiffness = 1.0;
-            let of_one = work(settings).unwrap_or(0.0);
-            settings.parameters.stiffness = of_one / target;
-        }
-        (Stepper::Range, Some(target)) => {
-            // W = C₀ δc.
-            let of_this = work(settings).unwrap_or(target);
-            settings.parameters.debonding_distance *= target / of_this;
-        }
-        _ => {}
-    }
-    settings
+    let joules = fracture_work(scene, scene.settings()).or_else(of_range);
+    joules.map_or(settings, |joules| with_fracture_work(scene, settings, joules))
 }
 
 /// A number as people write it.
@@ -301,14 +284,10 @@ mod tests {
         let mut scene = built_in("pile").unwrap();
         scene.parameters.bond = 20.0;
         scene.parameters.debonding_distance = 3e-3;
-        let work = |scene: &Scene, settings: Settings| {
-            let mut scene = scene.clone();
-            scene.set_settings(settings);
-            scene.simulation().unwrap().fracture_work().map_or(f64::NAN, |work| work.joules)
-        };
+        let work = |settings| fracture_work(&scene, settings).unwrap();
         let [range, dem] = [Stepper::Range, Stepper::Dem].map(|law| at_equal_work(&scene, law));
         assert_eq!(range.parameters.debonding_distance, 3e-3);
-        let [of_range, of_dem] = [range, dem].map(|settings| work(&scene, settings));
+        let [of_range, of_dem] = [range, dem].map(work);
         assert!((of_dem / of_range - 1.0).abs() < 1e-9, "{of_dem} {of_range}");
         let mut of_dem = scene.clone();
         of_dem.set_settings(dem);

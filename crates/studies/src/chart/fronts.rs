@@ -27,23 +27,26 @@ pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
 const CHARACTER: f64 = 0.018;
 const HIGH: f64 = 0.05;
 
-/// Words beside the ends of curves on logarithmic axes: to the right of what ends close by, and moved apart.
-pub fn end_labels(chart: &Chart, mut ends: Vec<(String, Rgb, (f64, f64))>) -> Vec<Layer> {
-    let part = |axis: &Axis, share: f64| (axis.to / axis.from).powf(share);
-    let high = part(&chart.y, HIGH);
-    ends.sort_by(|(.., one), (.., other)| one.1.total_cmp(&other.1));
-    let all: Vec<(f64, f64)> = ends.iter().map(|(.., end)| *end).collect();
-    let mut last = 0.0;
-    let label = |(text, colour, (x, y)): (String, Rgb, (f64, f64))| {
-        last = f64::max(y, last * high);
-        let long = part(&chart.x, CHARACTER * (text.chars().count() + 1) as f64);
-        let is_in_the_way = |(other_x, other_y): &&(f64, f64)| {
-            (1.0..long).contains(&(other_x / x)) && (last / high..last * high).contains(other_y)
-        };
-        let behind = all.iter().filter(is_in_the_way).map(|(other_x, _)| *other_x);
-        Layer::Words { at: (1.18 * behind.fold(x, f64::max), last), text, colour }
-    };
-    ends.into_iter().map(label).collect()
+impl Chart {
+    /// Adds words beside the ends of curves on logarithmic axes: to the right of what ends close by, and moved apart.
+    pub fn add_end_labels(&mut self, mut ends: Vec<(String, Rgb, (f64, f64))>) {
+        let part = |axis: &Axis, share: f64| (axis.to / axis.from).powf(share);
+        let high = part(&self.y, HIGH);
+        ends.sort_by(|(.., one), (.., other)| one.1.total_cmp(&other.1));
+        let all: Vec<(f64, f64)> = ends.iter().map(|(.., end)| *end).collect();
+        let mut last = 0.0;
+        for (text, colour, (x, y)) in ends {
+            last = f64::max(y, last * high);
+            let long = part(&self.x, CHARACTER * (text.chars().count() + 1) as f64);
+            let is_in_the_way = |(other_x, other_y): &&(f64, f64)| {
+                let heights = 0.99 * last / high..last * high;
+                (1.0..long).contains(&(other_x / x)) && heights.contains(other_y)
+            };
+            let behind = all.iter().filter(is_in_the_way).map(|(other_x, _)| *other_x);
+            let at = (1.18 * behind.fold(x, f64::max), last);
+            self.layers.push(Layer::Words { at, text, colour });
+        }
+    }
 }
 
 #[cfg(test)]
@@ -62,11 +65,11 @@ mod tests {
     #[test]
     fn labels_of_curves_that_end_together_stand_apart_and_beside_all_of_them() {
         let axis = || Axis::log("", 1e-4, 1e4);
-        let chart = Chart::new("", axis(), axis());
+        let mut chart = Chart::new("", axis(), axis());
         let ends = PALETTE.map(|colour| ("one".to_owned(), colour, (1.0, 0.01)));
         let near = ("near".to_owned(), PALETTE[0], (3.0, 0.01));
-        let labels = end_labels(&chart, ends.into_iter().chain([near]).collect());
-        let places = labels.iter().filter_map(|label| match label {
+        chart.add_end_labels(ends.into_iter().chain([near]).collect());
+        let places = chart.layers.iter().filter_map(|label| match label {
             Layer::Words { at, .. } => Some(*at),
             _ => None,
         });

@@ -6,7 +6,7 @@ mod even_lines;
 mod fronts;
 
 pub use draw::{png, svg};
-pub use fronts::{end_labels, pareto_front};
+pub use fronts::pareto_front;
 
 use crate::error::{Error, Result};
 

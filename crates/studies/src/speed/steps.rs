@@ -7,7 +7,7 @@ use super::solves::{
 };
 use super::variants::{self, ChartedVariant, Family};
 use super::{Bench, ChartSection};
-use crate::chart::{Axis, Chart, Layer, Look, Sheet, end_labels, points};
+use crate::chart::{Axis, Chart, Layer, Look, Sheet, points};
 use crate::error::Result;
 use crate::report::ReportTable;
 use crate::runner::{Case, Runner, Threads};
@@ -198,8 +198,7 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
             let (name, curve) = (family.name(), points(curve));
             chart.layers.push(Layer::quiet(name, curve, family.colour(), Look::LineAndDots));
         }
-        let labels = end_labels(&chart, ends);
-        chart.layers.extend(labels);
+        chart.add_end_labels(ends);
         charts.push(chart);
     }
     let charted = all.first().map_or(&[][..], |timed| &timed.variants);

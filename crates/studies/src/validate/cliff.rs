@@ -22,7 +22,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     about: "The same columns with cohesion, H₀ = 2R₀ (A. Abramian, L. Staron, P.-Y. Lagrée, J. Rheol. 64, 1227, 2020; \
             A. Gans et al., J. Fluid Mech. 2023): run-out falls with Bond, and from some Bond on the cliff stands: its \
             centre of mass sinks by less than a fifth. The height that it then has is held against the bound of Mohr and Coulomb, \
-            with tan φ_f = 0.36 and Z = 3.6.",
+            with tan φ_f = 0.36 and Z = 3.6. The surface of what has fallen is the rougher the more cohesive the \
+            grains, and self-affine as a crack's (A. Abramian et al., Soft Matter 2021, D1SM01148K, whose abstract was \
+            read): root mean square off a line through each 12 d of it.",
     cases: ExperimentCases::Chosen(cases),
     judge,
 };
@@ -72,6 +74,14 @@ fn standing_from(of_seed: &Measurements) -> f64 {
 fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
     let grains = all.first("grains");
     let system = format!("{grains} grains, Bond {}, {}", all.list("bond"), all.seeds());
+    let fallen = all.such_that(|case| case.reading("slump") >= STANDS);
+    let roughnesses = fallen.by_seed(|of_seed| {
+        rank_correlation(&of_seed.points(|case| (case.at("bond"), case.reading("roughness"))))
+    });
+    let exponents = fallen.by_seed(|of_seed| {
+        let most = of_seed.values("bond").last().copied().unwrap_or(f64::NAN);
+        of_seed.with("bond", most).reading("roughness_exponent")
+    });
     let (trends, ratios): (Vec<f64>, Vec<f64>) = all
         .by_seed(|mut of_seed| {
             of_seed.0.sort_by(|one, other| one.at("bond").total_cmp(&other.at("bond")));
@@ -86,14 +96,27 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
     let quantity = |name: &str, values: &[f64], band, source| {
         PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
     };
-    let fallen = "Abramian et al. 2020, Gans et al. 2023: it falls";
+    let falls = "Abramian et al. 2020, Gans et al. 2023: it falls";
     vec![
         PublishedQuantity::correlation(
             "rank correlation of run-out and Bond",
             &system,
             &trends,
             [-1.0, -1.0, -0.7],
-            fallen,
+            (SourceKind::Memory, falls),
+        ),
+        PublishedQuantity::correlation(
+            "rank correlation of roughness and Bond, of those that fall",
+            &system,
+            &roughnesses,
+            [0.5, 1.0, 1.0],
+            (SourceKind::Read, "Abramian et al. 2021: it grows with cohesion"),
+        ),
+        quantity(
+            "exponent of roughness in length, the most cohesive that fall",
+            &exponents,
+            [0.4, 0.67, 0.9],
+            "crack paths in the plane: 2/3",
         ),
         quantity(
             "height of the least cohesive cliff that stands, over the bound",

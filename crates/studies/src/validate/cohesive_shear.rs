@@ -2,10 +2,16 @@
 //!
 //! Grains that pull with C₀ under the pressure P have a second number besides I, η = C₀/(P d). With C₀ = Bond·m g/2 of two
 //! grains of mass m, and P in units of m g/d, η = Bond/(2P).
+//!
+//! Where the law says what work W breaks a bond there is a third, E = W/(m γ̇² d²), the work over the kinetic energy
+//! with which grains pass each other. Under `range` W = C₀ δc, so that E = η (δc/d)/I².
 
 use super::experiment::*;
-use super::shear::{PRESSURE, balance, layers};
+use super::fit::rank_correlation;
+use super::shear::{LayerKind, PRESSURE, balance, layers};
 use super::variants::StepVariant;
+use crate::sim::Stepper;
+use crate::statistics::mean;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "cohesive-shear",
@@ -13,7 +19,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     about: "The same at I ≈ 0.08 with cohesion, η = C₀/(P d): weak cohesion dilates and leaves friction as it is; from \
             some strength on friction rises, and the solid fraction falls further (P. Rognon et al., Europhys. Lett. \
             74, 644, 2006). That it is so was read, where weak ends and what number each has was not, so that signs and \
-            rough sizes alone are tested. Methods that take no driven walls are left out.",
+            rough sizes alone are tested. Under range and dem the energy of a bond is changed as well, E = W/(m γ̇² d²): \
+            force and energy rule the viscosity of cohesive flows (M. Macaulay, P. Rognon, arXiv 2009.12050, 2020, \
+            whose abstract was read). Methods that take no driven walls are left out.",
     cases: ExperimentCases::Chosen(cases),
     judge,
 };
@@ -23,14 +31,30 @@ const INERTIAL: f64 = 0.08;
 const WEAK: f64 = 1.0;
 const STRONG: f64 = 30.0;
 
+/// η and E of the layers whose bonds have an energy that is chosen: steps of 1 ms see the break of the weakest.
+const FORCES: [f64; 2] = [3.0, 10.0];
+const ENERGIES: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
+
 fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     let strengths: &[f64] =
         if quick { &[0.0, WEAK, STRONG] } else { &[0.0, 0.3, WEAK, 3.0, 10.0, STRONG, 60.0] };
-    let layer = |&strength: &f64| (("strength", strength), INERTIAL, 2.0 * PRESSURE * strength);
-    layers(quick, variant, &strengths.iter().map(layer).collect::<Vec<_>>())
+    let layer = |strength: f64, breaking_energy: Option<f64>| LayerKind {
+        at: vec![("strength", strength), ("energy", breaking_energy.unwrap_or(0.0))],
+        inertial: INERTIAL,
+        bond: 2.0 * PRESSURE * strength,
+        breaking_energy,
+    };
+    let mut kinds: Vec<LayerKind> =
+        strengths.iter().map(|&strength| layer(strength, None)).collect();
+    if matches!(variant.stepper, Stepper::Range | Stepper::Dem) {
+        let of_force = |force| ENERGIES.map(|energy| layer(force, Some(energy)));
+        kinds.extend(FORCES.into_iter().flat_map(of_force));
+    }
+    layers(quick, variant, &kinds)
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+fn judge(measured: &Measurements) -> Vec<PublishedQuantity> {
+    let all = &measured.with("energy", 0.0);
     let (grains, strengths) = (all.first("grains"), all.list("strength"));
     let system = format!("{grains} grains, η = {strengths}, {}", all.seeds());
     // Each layer against that of the same seed without cohesion.
@@ -44,7 +68,7 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
     let quantity = |name: &str, values: Vec<f64>, band, source| {
         PublishedQuantity::new(name, &system, &values, band, (SourceKind::Memory, source))
     };
-    vec![
+    let mut quantities = vec![
         quantity(
             "T/N at η = 1 over that without cohesion",
             against(WEAK, "friction", ratio),
@@ -70,5 +94,42 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
             "Rognon et al. 2006: strong cohesion dilates further",
         ),
         balance(all, "strength", &system),
+    ];
+    quantities.extend(of_energies(&measured.such_that(|case| case.at("energy") > 0.0)));
+    quantities
+}
+
+/// What friction does with the energy of a bond at one force, and with the force at one energy.
+fn of_energies(all: &Measurements) -> Vec<PublishedQuantity> {
+    if all.0.is_empty() {
+        return Vec::new();
+    }
+    let system =
+        format!("{} grains, E = {}, {}", all.first("grains"), all.list("energy"), all.seeds());
+    let source =
+        (SourceKind::Read, "Macaulay, Rognon 2020: energy and force of a bond rule the viscosity");
+    let [weak, strong] = FORCES;
+    let of_force = |force: f64| {
+        let trends = all.with("strength", force).by_seed(|of_seed| {
+            rank_correlation(&of_seed.points(|case| (case.at("energy"), case.reading("friction"))))
+        });
+        let name = format!("rank correlation of T/N and the energy of a bond, η = {force}");
+        PublishedQuantity::correlation(name, &system, &trends, [0.5, 1.0, 1.0], source)
+    };
+    let ratios = all.by_seed(|of_seed| {
+        let mean_friction =
+            |force| mean(&of_seed.with("strength", force).readings("friction")).mean;
+        mean_friction(strong) / mean_friction(weak)
+    });
+    vec![
+        of_force(weak),
+        of_force(strong),
+        PublishedQuantity::new(
+            format!("T/N at η = {strong} over that at η = {weak}, same energies"),
+            &system,
+            &ratios,
+            [1.02, 1.3, f64::INFINITY],
+            source,
+        ),
     ]
 }

@@ -3,13 +3,14 @@
 
 use super::experiment::*;
 use super::fit::power_law;
+use super::surface::{profile, roughness};
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, at_rest, centre_of_mass, loose, mean_energy, open_box, settled};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::scene::experiments::{collapse_of, half_width};
 use crate::scene::stability::{DIAMETER, GRAVITY, dry};
-use crate::sim::{Moment, OtherBody};
+use crate::sim::{GrainState, Moment, OtherBody};
 use crate::statistics::mean;
 use crate::world::Grain;
 
@@ -35,6 +36,8 @@ const TIMES: f64 = 6.0;
 const RELEASE_SECS: f64 = 0.02;
 /// The floor, in diameters: grains that lie in the hollows of the discs it is made of have their lowest points there.
 const FLOOR: f64 = 0.37;
+/// Windows over which the surface of a heap is held against a line, in diameters.
+const WINDOWS: [f64; 2] = [4.0, 12.0];
 
 fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     let (grains, seeds) = if quick { (260, 4) } else { (2_000, 8) };
@@ -76,12 +79,17 @@ impl CollapsingColumn {
         let mut run = WatchedRun::start(&scene)?;
         run.run_until(scene.duration_secs, |_| ())?;
         let width = half * DIAMETER;
-        let [reach, top] = reach_and_top(&run.simulation.moment());
+        let heap = joined(&run.simulation.moment());
+        let [reach, top] = reach_and_top(&heap);
+        let surface = profile(&heap);
+        let [rough, rougher] = WINDOWS.map(|window| roughness(&surface, window));
         Ok(run.with([
             ("aspect", height / width),
             ("run_out", reach / width - 1.0),
             ("height", (top - floor) / width),
             ("slump", run.simulation.observables().slump),
+            ("roughness", rougher),
+            ("roughness_exponent", (rougher / rough).ln() / (WINDOWS[1] / WINDOWS[0]).ln()),
             ("energy", mean_energy(&run.simulation)),
         ]))
     }
@@ -108,9 +116,8 @@ fn column_scene(grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// How far from the middle, and how high, the largest set of grains reaches that contacts join, m: the mean of both
-/// sides, and its highest point.
-fn reach_and_top(moment: &Moment) -> [f64; 2] {
+/// The grains of the largest set that contacts join.
+fn joined(moment: &Moment) -> Vec<GrainState> {
     let grains = &moment.grains;
     let mut set: Vec<usize> = (0..grains.len()).collect();
     fn root(set: &mut [usize], mut grain: usize) -> usize {
@@ -130,8 +137,13 @@ fn reach_and_top(moment: &Moment) -> [f64; 2] {
     let mut sizes = vec![0usize; grains.len()];
     roots.iter().for_each(|&root| sizes[root] += 1);
     let largest = (0..grains.len()).max_by_key(|&root| sizes[root]).unwrap_or(0);
+    grains.iter().zip(roots).filter(|(_, root)| *root == largest).map(|(grain, _)| *grain).collect()
+}
+
+/// How far from the middle, and how high, grains reach, m: the mean of both sides, and the highest point.
+fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     let (mut left, mut right, mut top) = (0.0f64, 0.0f64, 0.0f64);
-    for (grain, _) in grains.iter().zip(&roots).filter(|(_, root)| **root == largest) {
+    for grain in grains {
         left = left.max(grain.radius - grain.position.x);
         right = right.max(grain.radius + grain.position.x);
         top = top.max(grain.radius + grain.position.y);

@@ -234,9 +234,9 @@ impl PublishedQuantity {
         system: &str,
         values: &[f64],
         band: [f64; 3],
-        source: &'static str,
+        source: (SourceKind, &'static str),
     ) -> Self {
-        let mut quantity = Self::new(name, system, values, band, (SourceKind::Memory, source));
+        let mut quantity = Self::new(name, system, values, band, source);
         let Mean { low, high, .. } = &mut quantity.measured;
         (*low, *high) = (low.max(-1.0), high.min(1.0));
         quantity
@@ -289,7 +289,8 @@ mod tests {
     #[test]
     fn no_correlation_is_beyond_1() {
         let of = |values: &[f64]| {
-            PublishedQuantity::correlation("trend", "", values, [0.5, 1.0, 1.0], "it grows")
+            let source = (SourceKind::Memory, "it grows");
+            PublishedQuantity::correlation("trend", "", values, [0.5, 1.0, 1.0], source)
         };
         // Student's interval would reach 1.27.
         let few = of(&[1.0, 1.0, 0.5, 1.0]);

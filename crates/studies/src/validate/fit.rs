@@ -60,8 +60,8 @@ pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
     best
 }
 
-/// Slope of the line of least squares, and the squares that it leaves.
-fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
+/// Slope of the line of least squares, and the sum of the squares that it leaves.
+pub(super) fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
     let slope = slope(points);
     let (x_mean, y_mean) = middle(points);
     let left = |(x, y): &(f64, f64)| (y - y_mean - slope * (x - x_mean)).powi(2);

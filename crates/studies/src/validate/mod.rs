@@ -23,6 +23,7 @@ mod repose;
 mod runs;
 mod shear;
 mod silo;
+mod surface;
 mod variants;
 mod watched;
 

@@ -113,7 +113,7 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
             &system,
             &trends,
             [0.5, 1.0, 1.0],
-            "it grows with cohesion",
+            (SourceKind::Memory, "it grows with cohesion"),
         ));
     }
     quantities

@@ -23,6 +23,7 @@ use super::repose::shuffled;
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, solid_fraction};
 use crate::error::Result;
+use crate::fracture_work::with_fracture_work;
 use crate::scene::Scene;
 use crate::scene::experiments::{ShearCell, shear_of};
 use crate::scene::stability::{DIAMETER, GRAVITY};
@@ -64,16 +65,33 @@ const MARGIN: f64 = 2.5;
 fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     let speeds: &[f64] =
         if quick { &[0.03, 0.08, 0.18] } else { &[0.01, 0.02, 0.04, 0.07, 0.11, 0.15, 0.2] };
-    let layer = |inertial| (("inertial", inertial), inertial, 0.0);
-    layers(quick, variant, &speeds.iter().copied().map(layer).collect::<Vec<_>>())
+    let layer = |&inertial: &f64| LayerKind {
+        at: vec![("inertial", inertial)],
+        inertial,
+        bond: 0.0,
+        breaking_energy: None,
+    };
+    layers(quick, variant, &speeds.iter().map(layer).collect::<Vec<_>>())
 }
 
-/// Cases of layers by a number that tells them apart, their I and their Bond number; none where the method does not
-/// move walls that a force drives.
+/// What tells a sheared layer from others.
+#[derive(Clone, Debug)]
+pub(super) struct LayerKind {
+    /// Numbers by which cases are looked up.
+    pub at: Vec<(&'static str, f64)>,
+    /// I that is aimed at.
+    pub inertial: f64,
+    /// Bond number.
+    pub bond: f64,
+    /// The work that slowly breaks a bond, in m (γ̇ d)²; that of the stepper's own numbers where there is none.
+    pub breaking_energy: Option<f64>,
+}
+
+/// Cases of layers; none where the method does not move walls that a force drives.
 pub(super) fn layers(
     quick: bool,
     variant: StepVariant,
-    layers: &[((&'static str, f64), f64, f64)],
+    kinds: &[LayerKind],
 ) -> Vec<ExperimentCase> {
     let by_method = |info: &&MethodInfo| info.method == variant.method;
     let takes_drives = METHODS.iter().find(by_method).is_some_and(|info| info.takes_drives);
@@ -85,20 +103,20 @@ pub(super) fn layers(
     } else {
         (ShearCell { wide: 32, columns: 25, rows: 48 }, 8)
     };
-    seeded(layers, seeds, |(number, inertial, bond), seed| {
-        let layer = ShearedLayer { cell, inertial, bond, seed };
-        let at = [number, ("grains", layer.grains()), ("seed", seed as f64)];
+    let kinds: Vec<&LayerKind> = kinds.iter().collect();
+    seeded(&kinds, seeds, |kind, seed| {
+        let layer = ShearedLayer { cell, kind: kind.clone(), seed };
+        let at = [&kind.at[..], &[("grains", layer.grains()), ("seed", seed as f64)]].concat();
         let secs = PRESSING_SECS + (layer.strains_to_steady() + STRAINS[1]) / layer.rate();
         let cost = layer.grains() * secs / variant.time_step_secs;
         ExperimentCase::new(&at, cost, move || layer.run(variant))
     })
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct ShearedLayer {
     cell: ShearCell,
-    inertial: f64,
-    bond: f64,
+    kind: LayerKind,
     seed: u64,
 }
 
@@ -115,12 +133,12 @@ impl ShearedLayer {
 
     /// γ̇ that is aimed at, 1/s: √(m/P) = √(d/(g P)), P in m g/d.
     fn rate(&self) -> f64 {
-        self.inertial / inertial_secs()
+        self.kind.inertial / inertial_secs()
     }
 
     /// How far it is sheared until its flow is steady, in heights of it (see the module).
     fn strains_to_steady(&self) -> f64 {
-        let times = (self.height() * self.inertial).powi(2) / (PI * PI * SLOWEST);
+        let times = (self.height() * self.kind.inertial).powi(2) / (PI * PI * SLOWEST);
         STRAINS[0] + TIMES_TO_STEADY * times
     }
 
@@ -129,12 +147,17 @@ impl ShearedLayer {
         let mut scene = shuffled(shear_of(self.cell, PRESSURE, speed), self.seed);
         scene.parameters.friction = FRICTION;
         scene.parameters.restitution = RESTITUTION;
-        scene.parameters.bond = self.bond;
+        scene.parameters.bond = self.kind.bond;
         let top = scene.fixed_discs.iter().fold(0.0, |top: f64, disc| top.max(disc.position.y));
         for grain in &mut scene.grains {
             grain.velocity.x = speed * grain.position.y / top;
         }
         variant.apply(&mut scene);
+        if let Some(energy) = self.kind.breaking_energy {
+            let mass = scene.areal_density * 0.25 * PI * DIAMETER * DIAMETER;
+            let joules = energy * mass * (self.rate() * DIAMETER).powi(2);
+            scene.set_settings(with_fracture_work(&scene, scene.settings(), joules));
+        }
         scene
     }
 

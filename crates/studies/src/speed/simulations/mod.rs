@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::variants::{self, ChartedVariant, Family};
 use super::{Bench, ChartSection, listed};
-use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, end_labels, pareto_front, points};
+use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, pareto_front, points};
 use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
 use crate::number;

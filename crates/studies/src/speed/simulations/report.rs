@@ -94,8 +94,7 @@ fn with_errors(
         ends.extend(front.last().map(|end| (said, colour, (end.x, end.y))));
         chart.layers.push(Layer::quiet(name, front, colour, Look::LineAndDots));
     }
-    let labels = end_labels(&chart, ends);
-    chart.layers.extend(labels);
+    chart.add_end_labels(ends);
     chart
 }
 

@@ -1,0 +1,32 @@
+//! Contact laws whose bonds take a work that is asked for.
+
+use crate::scene::Scene;
+use crate::sim::{Settings, Stepper};
+
+/// The work, J, that slowly breaks a bond of two mean grains of a scene under these settings; none where the law knows
+/// none, or nothing pulls.
+pub(super) fn fracture_work(scene: &Scene, settings: Settings) -> Option<f64> {
+    let mut scene = scene.clone();
+    scene.set_settings(settings);
+    Some(scene.simulation().ok()?.fracture_work()?.joules).filter(|joules| *joules > 0.0)
+}
+
+/// Settings under which that takes so many J, by the debonding distance of `range` or the stiffness of `dem`; those
+/// that are given where another stepper moves the grains, or nothing pulls.
+pub(super) fn with_fracture_work(scene: &Scene, mut settings: Settings, joules: f64) -> Settings {
+    match settings.stepper {
+        Stepper::Dem => {
+            // W = C₀²/2k: the work at a stiffness of 1 N/m tells k.
+            settings.parameters.stiffness = 1.0;
+            let of_one = fracture_work(scene, settings).unwrap_or(0.0);
+            settings.parameters.stiffness = of_one / joules;
+        }
+        Stepper::Range => {
+            // W = C₀ δc.
+            let of_this = fracture_work(scene, settings).unwrap_or(joules);
+            settings.parameters.debonding_distance *= joules / of_this;
+        }
+        _ => {}
+    }
+    settings
+}
