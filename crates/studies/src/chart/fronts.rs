@@ -39,7 +39,8 @@ impl Chart {
             last = f64::max(y, last * high);
             let long = part(&self.x, CHARACTER * (text.chars().count() + 1) as f64);
             let is_in_the_way = |(other_x, other_y): &&(f64, f64)| {
-                let heights = 0.99 * last / high..last * high;
+                // What ends a little below rises through the label.
+                let heights = last / (high * high)..last * high;
                 (1.0..long).contains(&(other_x / x)) && heights.contains(other_y)
             };
             let behind = all.iter().filter(is_in_the_way).map(|(other_x, _)| *other_x);
