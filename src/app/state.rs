@@ -16,7 +16,7 @@ use super::painting::LegendCache;
 use super::panels::distributions::Distributions;
 use super::panels::gallery::Gallery;
 use super::panels::speed::StepRace;
-use super::panels::table::Table;
+use super::panels::table::BodyTable;
 use super::panels::trust::RunBudget;
 use super::panels::{Grabbing, GrainRef};
 use super::preferences::Preferences;
@@ -84,7 +84,7 @@ pub(crate) struct Shown {
     pub(super) gallery: Gallery,
     /// How many starts there were before the present lesson's.
     pub(super) loads_before_lesson: u64,
-    pub(super) table: Table,
+    pub(super) table: BodyTable,
     notice: Option<Notice>,
 }
 

@@ -10,7 +10,7 @@ use image::RgbaImage;
 use rayon::prelude::*;
 
 use super::folder::{EarlierFiles, RunFolder};
-use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
+use super::manifest::{Manifest, PictureEntry, RunEntry, RunStatus, ShownMoment};
 use super::options::texts_of_panel;
 use super::table::ObservablesTable;
 use super::writer::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
@@ -58,7 +58,7 @@ pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoic
     let mut failure = None;
     for (entry, run) in writer.manifest.runs.iter_mut().zip(&mut runs) {
         let FigureRun { paper: PaperRun { scene, .. }, recorded, .. } = run;
-        entry.end(Ended::of(recorded), recorded);
+        entry.end(RunStatus::of(recorded), recorded);
         tell_of_unconverged_steps(scene, &recorded.tally);
         tell_of_alarms(scene, recorded.simulation.alarms());
         let signal = caught_signal().filter(|_| recorded.interrupted);

@@ -34,7 +34,7 @@ const PART: u32 = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Ended {
+pub(super) enum RunStatus {
     /// Not yet; or it was killed.
     Running,
     /// At its full duration.
@@ -47,7 +47,7 @@ pub(super) enum Ended {
     Failed,
 }
 
-impl Ended {
+impl RunStatus {
     pub(super) fn of(recorded: &Recorded) -> Self {
         match &recorded.failure {
             Some(Error::NonFinite { .. }) => Self::NotFinite,
@@ -61,7 +61,7 @@ impl Ended {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RunEntry {
     pub name: String,
-    pub ended: Ended,
+    pub ended: RunStatus,
     /// Steps that it got to.
     pub step: u64,
     /// Simulated time that it got to, s.
@@ -194,7 +194,7 @@ impl RunEntry {
         let start = scene.simulation()?;
         Ok(Self {
             name: name.to_owned(),
-            ended: Ended::Running,
+            ended: RunStatus::Running,
             step: 0,
             time_secs: 0.0,
             scene: said,
@@ -216,7 +216,7 @@ impl RunEntry {
     }
 
     /// Tells what came of the run.
-    pub(super) fn end(&mut self, ended: Ended, recorded: &Recorded) {
+    pub(super) fn end(&mut self, ended: RunStatus, recorded: &Recorded) {
         let Recorded { simulation, tally, .. } = recorded;
         let Observables { step, time_secs, .. } = *simulation.observables();
         let settings = simulation.settings();

@@ -8,7 +8,7 @@ use image::RgbaImage;
 
 use super::HeadlessOptions;
 use super::folder::{Checkpoints, Marks};
-use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
+use super::manifest::{Manifest, PictureEntry, RunEntry, RunStatus, ShownMoment};
 use super::options::PictureSize;
 use super::table::ObservablesTable;
 use super::waiting::WaitingStates;
@@ -172,7 +172,7 @@ impl<'a> RunWriter<'a> {
         let table = self.table.take().map_or(Ok(()), ObservablesTable::finish);
         let recording = self.end_recording();
         recorded.failure = recorded.failure.or(saved.err()).or(table.err()).or(recording.err());
-        self.manifest.runs[0].end(Ended::of(&recorded), &recorded);
+        self.manifest.runs[0].end(RunStatus::of(&recorded), &recorded);
         let (drawn, signal) = match self.draw_waiting(signal) {
             Ok(signal) => (Ok(()), signal),
             Err(error) => (Err(error), signal),
@@ -200,11 +200,11 @@ impl<'a> RunWriter<'a> {
         let progress = Progress::new("drawing", waiting.len() as u64);
         for index in 0..waiting.len() {
             if let (None, Some(signal)) = (ended_by, caught_signal()) {
-                self.manifest.runs[0].ended = Ended::Interrupted;
+                self.manifest.runs[0].ended = RunStatus::Interrupted;
                 return Ok(Some(signal));
             }
             let drawn = waiting.get(index).and_then(|(number, state)| self.draw(number, &state));
-            drawn.inspect_err(|_| self.manifest.runs[0].ended = Ended::Failed)?;
+            drawn.inspect_err(|_| self.manifest.runs[0].ended = RunStatus::Failed)?;
             progress.advance(1);
         }
         progress.finish();
@@ -250,7 +250,7 @@ impl<'a> RunWriter<'a> {
         let gif = self.gif.take().map_or(Ok(false), Animation::finish);
         self.write_manifest()?;
         // Where the run is complete, nothing is left to go on with.
-        if self.manifest.runs[0].ended == Ended::Complete
+        if self.manifest.runs[0].ended == RunStatus::Complete
             && let (Ok(_), Ok(_), Some(checkpoints)) = (&video, &gif, self.checkpoints.take())
         {
             checkpoints.remove()?;

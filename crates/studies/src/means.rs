@@ -28,12 +28,12 @@ struct SweepReport<'a> {
     study: &'a str,
     runs: usize,
     core_secs: f64,
-    groups: Vec<Group>,
+    groups: Vec<RunGroup>,
 }
 
 /// Runs that differ in their start alone.
 #[derive(Default, Serialize)]
-struct Group {
+struct RunGroup {
     /// What varies between groups.
     settings: Map<String, Value>,
     /// Runs that have a number: those that came to an end and lost no grain.
@@ -84,7 +84,7 @@ struct Run<'a> {
     secs: f64,
 }
 
-fn groups(study: &Study, table: &RunsTable) -> Result<Vec<Group>> {
+fn groups(study: &Study, table: &RunsTable) -> Result<Vec<RunGroup>> {
     let varied = || study.varied.iter().flatten().filter(|name| *name != SEED);
     let mut order: Vec<Vec<Value>> = Vec::new();
     let mut runs: HashMap<String, Vec<Run<'_>>> = HashMap::new();
@@ -133,7 +133,7 @@ fn groups(study: &Study, table: &RunsTable) -> Result<Vec<Group>> {
         let tallies = || all.iter().map(|run| &run.result.tally);
         let steps: u64 = tallies().map(|tally| tally.steps).sum();
         let unsolved: u64 = tallies().map(|tally| tally.unconverged_steps).sum();
-        Group {
+        RunGroup {
             settings: varied().cloned().zip(values.iter().cloned()).collect(),
             starts: here.len(),
             spoilt: all.len() - here.len(),
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     /// A study of the cradle without runs of its own, and results made up for it.
-    fn reported(vary: &str, slump: impl Fn(usize) -> f64, spoil: Option<usize>) -> Vec<Group> {
+    fn reported(vary: &str, slump: impl Fn(usize) -> f64, spoil: Option<usize>) -> Vec<RunGroup> {
         let text = format!("name = \"made\"\n[base]\nscene = \"pile\"\n[vary]\n{vary}");
         let study = Study::parse(&text, "made.toml".as_ref(), false).expect("a study");
         let rows = study.runs.iter().enumerate().map(|(number, run)| {

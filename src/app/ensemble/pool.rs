@@ -48,7 +48,7 @@ pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + 
 
 /// What a thread does with a pile, by the pile's place among the others.
 #[derive(Clone, Copy, PartialEq)]
-enum Job {
+enum PileJob {
     /// Let it settle.
     Settle(usize),
     /// Run it with the settings of a world.
@@ -80,32 +80,32 @@ pub(crate) struct EnsembleSummary {
 struct Jobs {
     /// None where a world has no others.
     worlds: Vec<Option<Settings>>,
-    begun: Vec<(Job, JobState)>,
+    begun: Vec<(PileJob, JobState)>,
     /// Of runs that have come to their end, by their settings.
     bands: Vec<(Settings, Arc<Band>)>,
     is_over: bool,
 }
 
 impl Jobs {
-    fn state(&self, job: Job) -> Option<&JobState> {
+    fn state(&self, job: PileJob) -> Option<&JobState> {
         self.begun.iter().find(|(begun, _)| *begun == job).map(|(_, state)| state)
     }
 
-    fn is_under_way(&self, job: Job) -> bool {
+    fn is_under_way(&self, job: PileJob) -> bool {
         !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
     }
 
     /// Begins what is to be done next: pile by pile, each for all worlds, so that all have as many. With it come
     /// the grains that are to run.
-    fn next(&mut self, piles: usize) -> Option<(Job, Vec<Grain>)> {
+    fn next(&mut self, piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         let settings: Vec<Settings> = self.worlds.iter().copied().flatten().collect();
         if settings.is_empty() {
             return None;
         }
-        let next = (0..piles).find_map(|pile| match self.state(Job::Settle(pile)) {
-            None => Some((Job::Settle(pile), Vec::new())),
+        let next = (0..piles).find_map(|pile| match self.state(PileJob::Settle(pile)) {
+            None => Some((PileJob::Settle(pile), Vec::new())),
             Some(JobState::Settled(grains)) => {
-                let mut runs = settings.iter().map(|&settings| Job::Run(pile, settings));
+                let mut runs = settings.iter().map(|&settings| PileJob::Run(pile, settings));
                 runs.find(|&run| self.state(run).is_none()).map(|run| (run, grains.clone()))
             }
             Some(_) => None,
@@ -115,7 +115,7 @@ impl Jobs {
     }
 
     /// Notes how far a job has come, where it is still wanted.
-    fn note(&mut self, job: Job, state: JobState) {
+    fn note(&mut self, job: PileJob, state: JobState) {
         if !self.is_under_way(job) {
             return;
         }
@@ -123,11 +123,11 @@ impl Jobs {
         if let Some(begun) = self.begun.iter_mut().find(|(begun, _)| *begun == job) {
             begun.1 = state;
         }
-        if let Job::Run(_, settings) = job
+        if let PileJob::Run(_, settings) = job
             && is_run
         {
             let done = self.begun.iter().filter_map(|(job, state)| match (job, state) {
-                (Job::Run(_, own), JobState::Ran(series)) if *own == settings => Some(series),
+                (PileJob::Run(_, own), JobState::Ran(series)) if *own == settings => Some(series),
                 _ => None,
             });
             let band = Arc::new(Band::of(&done.collect::<Vec<_>>()));
@@ -189,8 +189,8 @@ impl WorkerPool {
         let mut jobs = self.state.lock();
         let is_wanted = |settings: &Settings| worlds.contains(&Some(*settings));
         jobs.begun.retain(|(job, _)| match job {
-            Job::Settle(_) => true,
-            Job::Run(_, settings) => is_wanted(settings),
+            PileJob::Settle(_) => true,
+            PileJob::Run(_, settings) => is_wanted(settings),
         });
         jobs.bands.retain(|(settings, _)| is_wanted(settings));
         jobs.worlds = worlds;
@@ -202,9 +202,10 @@ impl WorkerPool {
         let (jobs, piles) = (self.state.lock(), &self.state.piles);
         let settings = (*jobs.worlds.get(world)?)?;
         let has_failed = |job| matches!(jobs.state(job), Some(JobState::Failed));
-        let failed =
-            |&pile: &usize| has_failed(Job::Settle(pile)) || has_failed(Job::Run(pile, settings));
-        let settling = |pile| match jobs.state(Job::Settle(pile)) {
+        let failed = |&pile: &usize| {
+            has_failed(PileJob::Settle(pile)) || has_failed(PileJob::Run(pile, settings))
+        };
+        let settling = |pile| match jobs.state(PileJob::Settle(pile)) {
             Some(JobState::Underway(part)) => Some((pile + 1, *part)),
             _ => None,
         };
@@ -239,11 +240,11 @@ impl PoolState {
     fn work(&self) {
         while let Some((job, grains)) = self.next() {
             let came_to = match job {
-                Job::Settle(pile) => {
+                PileJob::Settle(pile) => {
                     let settled = self.settle(job, &self.piles[pile]);
                     Some(settled.map_or(JobState::Failed, JobState::Settled))
                 }
-                Job::Run(pile, settings) => {
+                PileJob::Run(pile, settings) => {
                     let scene = scene_of(&self.opened, &self.piles[pile], grains, &settings);
                     let goes_on = || self.lock().is_under_way(job);
                     let ran = scene.and_then(|scene| slump(&scene, goes_on));
@@ -258,7 +259,7 @@ impl PoolState {
     }
 
     /// The next job, once there is one; nothing where all is over.
-    fn next(&self) -> Option<(Job, Vec<Grain>)> {
+    fn next(&self) -> Option<(PileJob, Vec<Grain>)> {
         let mut jobs = self.lock();
         while !jobs.is_over {
             if let Some(next) = jobs.next(self.piles.len()) {
@@ -269,7 +270,7 @@ impl PoolState {
         None
     }
 
-    fn settle(&self, job: Job, pile: &NewPile) -> Result<Vec<Grain>> {
+    fn settle(&self, job: PileJob, pile: &NewPile) -> Result<Vec<Grain>> {
         check_writable("cache folder", &self.folder)?;
         let mut told: Option<Instant> = None;
         settled_pile(&self.folder, pile, |settling: Settling| {

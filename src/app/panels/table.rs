@@ -16,7 +16,7 @@ const FONT: f32 = 10.5;
 
 /// What is asked of the table.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Table {
+pub(crate) struct BodyTable {
     /// True where it has contacts; else it has grains.
     contacts: bool,
     /// What a row has to fulfil.
@@ -26,7 +26,7 @@ pub(crate) struct Table {
 }
 
 /// A column of rows that are made of `T`.
-struct Column<T> {
+struct ShownColumn<T> {
     name: &'static str,
     /// Characters.
     width: usize,
@@ -37,7 +37,7 @@ struct Column<T> {
     value: fn(usize, &T, f64) -> f64,
 }
 
-const GRAINS: [Column<GrainView>; 7] = [
+const GRAINS: [ShownColumn<GrainView>; 7] = [
     column("grain", 5, true, "Its number.", |index, _, _| index as f64),
     column("x", 8, false, "x over d.", |_, grain, d| grain.position.x / d),
     column("y", 8, false, "y over d.", |_, grain, d| grain.position.y / d),
@@ -52,7 +52,7 @@ const GRAINS: [Column<GrainView>; 7] = [
 /// What stands for the number of what is fixed.
 const FIXED: f64 = -1.0;
 
-const CONTACTS: [Column<ContactView>; 7] = [
+const CONTACTS: [ShownColumn<ContactView>; 7] = [
     column("grain", 5, true, "Its first grain.", |_, contact, _| f64::from(contact.grain)),
     column("with", 5, true, "Its second grain; -1 is what is fixed.", |_, contact, _| {
         contact.other_grain.map_or(FIXED, f64::from)
@@ -70,8 +70,8 @@ const fn column<T>(
     whole: bool,
     hint: &'static str,
     value: fn(usize, &T, f64) -> f64,
-) -> Column<T> {
-    Column { name, width, whole, hint, value }
+) -> ShownColumn<T> {
+    ShownColumn { name, width, whole, hint, value }
 }
 
 pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -84,7 +84,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
         ui.selectable_value(&mut table.contacts, false, "Grains");
         ui.selectable_value(&mut table.contacts, true, "Contacts");
         if table.contacts != before {
-            *table = Table { contacts: table.contacts, ..Table::default() };
+            *table = BodyTable { contacts: table.contacts, ..BodyTable::default() };
         }
         let hint = if table.contacts { "N < 0 and y > 2" } else { "force > 0.01 and y > 2" };
         let label = ui.label("Filter").on_hover_text(
@@ -115,10 +115,10 @@ pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
 /// Shows heads and rows, and gives the number of one that is clicked.
 fn rows<T>(
     ui: &mut Ui,
-    table: &mut Table,
+    table: &mut BodyTable,
     snapshot: &Snapshot,
     all: &[T],
-    columns: &[Column<T>],
+    columns: &[ShownColumn<T>],
     is_pinned: impl Fn(usize, &T) -> bool,
 ) -> Option<usize> {
     let diameter = snapshot.surroundings.mean_diameter;
@@ -172,7 +172,7 @@ fn rows<T>(
 }
 
 /// A number in the width of its column.
-fn written<T>(value: f64, column: &Column<T>) -> String {
+fn written<T>(value: f64, column: &ShownColumn<T>) -> String {
     if column.whole {
         return format!("{value}");
     }
@@ -183,9 +183,9 @@ fn written<T>(value: f64, column: &Column<T>) -> String {
 
 /// The numbers of the rows that pass the filter, as they are sorted.
 fn chosen<T>(
-    table: &Table,
+    table: &BodyTable,
     all: &[T],
-    columns: &[Column<T>],
+    columns: &[ShownColumn<T>],
     diameter: f64,
 ) -> Result<Vec<usize>, String> {
     let comparisons = read_filter(&table.filter, columns)?;
@@ -224,7 +224,7 @@ impl Comparison {
 }
 
 /// Comparisons joined by "and".
-fn read_filter<T>(text: &str, columns: &[Column<T>]) -> Result<Vec<Comparison>, String> {
+fn read_filter<T>(text: &str, columns: &[ShownColumn<T>]) -> Result<Vec<Comparison>, String> {
     let parts = text.split(" and ").map(str::trim).filter(|part| !part.is_empty());
     let read = |part: &str| -> Option<Comparison> {
         let (sign, at) = SIGNS.iter().find_map(|sign| Some((*sign, part.find(sign)?)))?;
@@ -256,7 +256,7 @@ mod tests {
         simulation.take_steps(5).unwrap();
         let snapshot = simulation.snapshot();
         let d = snapshot.surroundings.mean_diameter;
-        let table = |contacts, filter: &str| Table {
+        let table = |contacts, filter: &str| BodyTable {
             contacts,
             filter: filter.into(),
             sort: Some((5, true)),

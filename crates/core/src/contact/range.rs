@@ -59,7 +59,7 @@ pub(crate) struct Bond {
 
 /// The opening of one bond during one step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Opening {
+pub(crate) struct OpeningMotion {
     /// D = δ_c − s, m.
     pub left: f64,
     /// v, m/s.
@@ -68,7 +68,7 @@ pub(crate) struct Opening {
     pub load: f64,
 }
 
-impl Opening {
+impl OpeningMotion {
     /// C·min(1, τ/Δt), m/s: the largest reduced impulse that the bond can take up in a step of
     /// `time_step_secs` in which its force alone would change the speed by `capture_speed` (C).
     pub(crate) fn bound(&self, capture_speed: f64, time_step_secs: f64) -> f64 {
@@ -105,7 +105,7 @@ mod tests {
     const TIME_STEP_SECS: f64 = 0.1;
 
     fn bound(left: f64, speed: f64, load: f64) -> f64 {
-        Opening { left, speed, load }.bound(CAPTURE_SPEED, TIME_STEP_SECS)
+        OpeningMotion { left, speed, load }.bound(CAPTURE_SPEED, TIME_STEP_SECS)
     }
 
     #[test]

@@ -79,8 +79,8 @@ impl Fields {
         let [low, high] =
             centres.chain(touched).map(reach).reduce(wider).unwrap_or([DVec2::ZERO; 2]);
         let axes = [
-            Axis::of(periodic.x, [low.x, high.x], width),
-            Axis::of(periodic.y, [low.y, high.y], width),
+            GridAxis::of(periodic.x, [low.x, high.x], width),
+            GridAxis::of(periodic.y, [low.y, high.y], width),
         ];
         let count: f64 = axes.iter().map(|axis| axis.cells).product();
         if count > MOST_CELLS {
@@ -165,7 +165,7 @@ fn outer(a: DVec2, b: DVec2) -> DMat2 {
 }
 
 /// The cells along an axis.
-struct Axis {
+struct GridAxis {
     wraps: bool,
     origin: f64,
     side: f64,
@@ -173,7 +173,7 @@ struct Axis {
     cells: f64,
 }
 
-impl Axis {
+impl GridAxis {
     /// All cells that what lies between two places is smeared over, or all between borders that wrap.
     fn of(borders: Option<[f64; 2]>, [from, to]: [f64; 2], width: f64) -> Self {
         let side = width / CELLS_IN_WIDTH;
@@ -229,7 +229,7 @@ fn spline_below(place: f64) -> f64 {
 }
 
 struct Smoothing {
-    axes: [Axis; 2],
+    axes: [GridAxis; 2],
     periodic: Periodic,
     width: f64,
 }

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::causes::{Cause, Share, Variant};
-use super::collect::{Ended, Runs};
-use super::quantity::Quantity;
+use super::collect::{BudgetEnd, Runs};
+use super::quantity::BudgetQuantity;
 use super::words::Words;
 use crate::statistics::Mean;
 
@@ -95,9 +95,9 @@ pub(super) const SMOOTH: f64 = 0.01;
 
 pub(super) fn budget_of(
     runs: &Runs,
-    ended: Ended,
+    ended: BudgetEnd,
     design: &Design<'_>,
-    (number, quantity): (usize, &Quantity),
+    (number, quantity): (usize, &BudgetQuantity),
     itself: Option<f64>,
 ) -> QuantityBudget {
     let within = runs.within[number];
@@ -262,7 +262,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use super::super::causes::variants;
-    use super::super::collect::{Job, Limits, Ran, collect};
+    use super::super::collect::{Limits, Ran, SeriesRun, collect};
     use super::super::starts::RunValues;
     use super::*;
     use crate::scene::{NewPile, built_in};
@@ -290,7 +290,7 @@ mod tests {
         let mut scene = built_in("pile").unwrap();
         scene.parameters.bond = 20.0;
         let variants = variants(&scene, Some(&NewPile::default()), true);
-        let run = |Job { series, start }: Job| {
+        let run = |SeriesRun { series, start }: SeriesRun| {
             // The sum of twelve uniform numbers is as good as normal here.
             let normal = |number: u64| {
                 let mut random = Pcg64::seed_from_u64(number);

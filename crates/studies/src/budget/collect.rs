@@ -19,7 +19,7 @@ const PART: f64 = 0.1;
 
 /// A run of series `series`, 0 for the scene as it is, from start `start`, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Job {
+pub(super) struct SeriesRun {
     pub series: usize,
     pub start: usize,
 }
@@ -49,7 +49,7 @@ pub(super) struct Limits {
 /// Why no more was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Ended {
+pub(crate) enum BudgetEnd {
     /// Every interval is as narrow as asked for.
     Within,
     /// The time is spent.
@@ -175,12 +175,16 @@ pub(super) fn collect(
     costs: Vec<f64>,
     quantities: usize,
     limits: Limits,
-    (run, is_free): (&(impl Fn(Job) -> Result<Ran> + Sync), &impl Fn(Job) -> Result<bool>),
+    (run, is_free): (
+        &(impl Fn(SeriesRun) -> Result<Ran> + Sync),
+        &impl Fn(SeriesRun) -> Result<bool>,
+    ),
     watch: &mut impl FnMut(&Runs) -> ControlFlow<()>,
-) -> Result<(Runs, Ended)> {
+) -> Result<(Runs, BudgetEnd)> {
     let mut runs = Runs::new(costs, quantities);
-    let secs_of = |runs: &Runs, jobs: &[Job]| -> Result<f64> {
-        let secs = |job: &Job| Ok(if is_free(*job)? { 0.0 } else { runs.secs_a_run(job.series) });
+    let secs_of = |runs: &Runs, jobs: &[SeriesRun]| -> Result<f64> {
+        let secs =
+            |job: &SeriesRun| Ok(if is_free(*job)? { 0.0 } else { runs.secs_a_run(job.series) });
         jobs.iter().map(secs).sum()
     };
     take(&mut runs, first(0).collect(), limits.shows_progress, run)?;
@@ -190,11 +194,11 @@ pub(super) fn collect(
         .map(|within| within * (limits.parts as f64).sqrt())
         .collect();
     if (0..quantities).all(|quantity| runs.failure(0, quantity).is_some()) {
-        return Ok((runs, Ended::Failed));
+        return Ok((runs, BudgetEnd::Failed));
     }
     loop {
         if watch(&runs).is_break() {
-            return Ok((runs, Ended::Stopped));
+            return Ok((runs, BudgetEnd::Stopped));
         }
         let left = limits.cost_secs - runs.spent_secs();
         let mut jobs = begun(&runs, left, &secs_of)?;
@@ -209,8 +213,8 @@ pub(super) fn collect(
 }
 
 /// The first starts of a series.
-fn first(series: usize) -> impl Iterator<Item = Job> {
-    (0..FIRST).map(move |start| Job { series, start })
+fn first(series: usize) -> impl Iterator<Item = SeriesRun> {
+    (0..FIRST).map(move |start| SeriesRun { series, start })
 }
 
 /// The width to come to where none is asked for, rounded to a digit.
@@ -227,15 +231,15 @@ fn width(runs: &Runs, quantity: usize) -> f64 {
 fn begun(
     runs: &Runs,
     left_secs: f64,
-    secs_of: &impl Fn(&Runs, &[Job]) -> Result<f64>,
-) -> Result<Vec<Job>> {
+    secs_of: &impl Fn(&Runs, &[SeriesRun]) -> Result<f64>,
+) -> Result<Vec<SeriesRun>> {
     let mut new: Vec<usize> =
         (0..runs.all.len()).filter(|&series| !runs.is_begun(series)).collect();
     new.sort_by(|one, other| runs.secs_a_run(*one).total_cmp(&runs.secs_a_run(*other)));
     let (mut left, mut jobs) = (left_secs, Vec::new());
     for series in new {
         let had = runs.all[series].len();
-        let more: Vec<Job> = first(series).skip(had).collect();
+        let more: Vec<SeriesRun> = first(series).skip(had).collect();
         left -= secs_of(runs, &more)?;
         if left >= 0.0 {
             jobs.extend(more.into_iter().take(if had == 0 { 1 } else { FIRST }));
@@ -248,8 +252,8 @@ fn begun(
 fn widened(
     runs: &Runs,
     left_secs: f64,
-    secs_of: &impl Fn(&Runs, &[Job]) -> Result<f64>,
-) -> Result<std::result::Result<Vec<Job>, Ended>> {
+    secs_of: &impl Fn(&Runs, &[SeriesRun]) -> Result<f64>,
+) -> Result<std::result::Result<Vec<SeriesRun>, BudgetEnd>> {
     let begun = (0..runs.all.len()).filter(|&series| runs.is_begun(series));
     let mut wide: Vec<(f64, usize)> = begun
         .map(|series| (runs.excess(series), series))
@@ -257,7 +261,7 @@ fn widened(
         .collect();
     if wide.is_empty() {
         let is_whole = (0..runs.all.len()).all(|series| runs.is_begun(series));
-        return Ok(Err(if is_whole { Ended::Within } else { Ended::Cost }));
+        return Ok(Err(if is_whole { BudgetEnd::Within } else { BudgetEnd::Cost }));
     }
     wide.sort_by(|one, other| other.0.total_cmp(&one.0));
     for (excess, series) in wide {
@@ -265,12 +269,12 @@ fn widened(
         // Intervals narrow with the root of the number of starts; at most as many again, as scatter is not known well.
         let needed = (count as f64 * (excess * excess - 1.0)).ceil().clamp(1.0, count as f64);
         let missing = |one: usize, to: usize| {
-            (runs.all[one].len()..to).map(move |start| Job { series: one, start })
+            (runs.all[one].len()..to).map(move |start| SeriesRun { series: one, start })
         };
         let mut more = needed as usize;
         while more > 0 {
             let to = count + more;
-            let jobs: Vec<Job> =
+            let jobs: Vec<SeriesRun> =
                 missing(series, to).chain(missing(0, if series == 0 { 0 } else { to })).collect();
             if secs_of(runs, &jobs)? <= left_secs {
                 return Ok(Ok(jobs));
@@ -278,20 +282,21 @@ fn widened(
             more /= 2;
         }
     }
-    Ok(Err(Ended::Cost))
+    Ok(Err(BudgetEnd::Cost))
 }
 
 /// Computes runs on all cores, the longest first, and puts each in its place.
 fn take(
     runs: &mut Runs,
-    mut jobs: Vec<Job>,
+    mut jobs: Vec<SeriesRun>,
     shows_progress: bool,
-    run: &(impl Fn(Job) -> Result<Ran> + Sync),
+    run: &(impl Fn(SeriesRun) -> Result<Ran> + Sync),
 ) -> Result<()> {
-    let cost = |job: &Job| if runs.all[0].is_empty() { 1.0 } else { runs.secs_a_run(job.series) };
+    let cost =
+        |job: &SeriesRun| if runs.all[0].is_empty() { 1.0 } else { runs.secs_a_run(job.series) };
     jobs.sort_by(|one, other| cost(other).total_cmp(&cost(one)));
     let progress = shows_progress.then(|| Progress::new("budget", jobs.len() as u64));
-    let done: Result<Vec<(Job, Ran)>> = jobs
+    let done: Result<Vec<(SeriesRun, Ran)>> = jobs
         .into_par_iter()
         .map(|job| {
             let ran = run(job)?;

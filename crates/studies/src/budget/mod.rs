@@ -20,8 +20,8 @@ use serde::Serialize;
 pub use self::answer::Trust;
 use self::answer::{Design, QuantityBudget, budget_of};
 use self::causes::variants;
-use self::collect::{Ended, Job, Limits, Ran, collect};
-use self::quantity::{Quantity, Window};
+use self::collect::{BudgetEnd, Limits, Ran, SeriesRun, collect};
+use self::quantity::{BudgetQuantity, Window};
 use self::starts::{RunValues, Starts, run, said_of};
 use crate::config::{Config, joined};
 use crate::error::{self, Error, Result};
@@ -64,7 +64,7 @@ pub struct ErrorBudget {
     stepped: String,
     from_secs: f64,
     to_secs: f64,
-    ended: Ended,
+    ended: BudgetEnd,
     /// All that the scene says, grains left out.
     config: Config,
     quantities: Vec<QuantityBudget>,
@@ -135,7 +135,8 @@ fn made_showing(
 ) -> Result<ErrorBudget> {
     let BudgetOptions { config, quantities, within, cost_secs, .. } = options;
     let asked = if quantities.is_empty() { &[QUANTITY.to_owned()] } else { &quantities[..] };
-    let quantities: Vec<Quantity> = asked.iter().map(|text| text.parse()).collect::<Result<_>>()?;
+    let quantities: Vec<BudgetQuantity> =
+        asked.iter().map(|text| text.parse()).collect::<Result<_>>()?;
     error::check(*cost_secs > 0.0, "cost", format!("{cost_secs} s"), "a time > 0")?;
     if let Some(within) = within {
         error::check(
@@ -162,15 +163,15 @@ fn made_showing(
     };
     // Parts deal starts out among themselves, so that they need not know of each other.
     let (part, parts) = options.shard.map_or((1, 1), |shard| (shard.index, shard.count));
-    let of_job = |Job { series, start }: Job| {
+    let of_job = |SeriesRun { series, start }: SeriesRun| {
         let variant = series.checked_sub(1).map(|one| &variants[one]);
         ((start * parts + part) as u64, variant)
     };
-    let compute = |job: Job| {
+    let compute = |job: SeriesRun| {
         let (start, variant) = of_job(job);
         ran(&key(Some(start), variant)?, &|| starts.scene(start, variant))
     };
-    let is_free = |job: Job| -> Result<bool> {
+    let is_free = |job: SeriesRun| -> Result<bool> {
         let (start, variant) = of_job(job);
         Ok(!others.is_empty() && others.contains(&key(Some(start), variant)?))
     };
@@ -184,8 +185,8 @@ fn made_showing(
         time_step_secs: settings.parameters.time_step_secs,
     };
     let command = command_of(options, &settings)?;
-    let of = |runs: &collect::Runs, ended: Ended| {
-        let of_quantity = |(number, quantity): (usize, &Quantity)| {
+    let of = |runs: &collect::Runs, ended: BudgetEnd| {
+        let of_quantity = |(number, quantity): (usize, &BudgetQuantity)| {
             let itself = itself.as_ref().filter(|ran| ran.values.failure.is_none());
             let itself = itself.and_then(|ran| ran.values.values[number]);
             budget_of(runs, ended, &design, (number, quantity), itself)
@@ -205,7 +206,7 @@ fn made_showing(
     };
     let (runs, ended) =
         collect(costs, quantities.len(), limits, (&compute, &is_free), &mut |runs| {
-            watch(&of(runs, Ended::Stopped))
+            watch(&of(runs, BudgetEnd::Stopped))
         })?;
     Ok(of(&runs, ended))
 }

@@ -26,23 +26,23 @@ const STATISTICS: [(&str, Statistic); 4] = [
 ];
 
 #[derive(Clone, Copy)]
-enum Column {
+enum RecordedColumn {
     OfSteps(&'static ColumnSpec<Observables>),
     OfMeasures(&'static ColumnSpec<PileMeasures>),
 }
 
 /// A number that a run comes to.
 #[derive(Clone)]
-pub(crate) struct Quantity {
+pub(crate) struct BudgetQuantity {
     /// As it was asked for.
     pub name: String,
     /// Its unit; empty where it has none.
     pub unit: &'static str,
     statistic: Statistic,
-    column: Column,
+    column: RecordedColumn,
 }
 
-impl std::str::FromStr for Quantity {
+impl std::str::FromStr for BudgetQuantity {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
@@ -74,13 +74,13 @@ fn names() -> impl Iterator<Item = &'static str> {
     of_steps.chain(measures.filter(is_new))
 }
 
-fn column_of(name: &str) -> Option<(Column, &'static str)> {
+fn column_of(name: &str) -> Option<(RecordedColumn, &'static str)> {
     let of_steps = STEP_COLUMNS.iter().find(|column| column.name == name && is_number(column));
     if let Some(column) = of_steps {
-        return Some((Column::OfSteps(column), column.unit));
+        return Some((RecordedColumn::OfSteps(column), column.unit));
     }
     let column = PileMeasures::COLUMNS.iter().find(|column| column.name == name)?;
-    Some((Column::OfMeasures(column), column.unit))
+    Some((RecordedColumn::OfMeasures(column), column.unit))
 }
 
 /// A part of a run, by simulated time.
@@ -91,8 +91,8 @@ pub(crate) struct Window {
 }
 
 /// What quantities come to while a run goes on.
-pub(super) struct Watch<'a> {
-    quantities: &'a [Quantity],
+pub(super) struct QuantityWatch<'a> {
+    quantities: &'a [BudgetQuantity],
     first: u64,
     last: u64,
     stride: u64,
@@ -108,8 +108,12 @@ struct Found {
     latest: f64,
 }
 
-impl<'a> Watch<'a> {
-    pub(super) fn new(quantities: &'a [Quantity], window: Window, simulation: &Simulation) -> Self {
+impl<'a> QuantityWatch<'a> {
+    pub(super) fn new(
+        quantities: &'a [BudgetQuantity],
+        window: Window,
+        simulation: &Simulation,
+    ) -> Self {
         let [first, last] = [window.from_secs, window.to_secs].map(|at| simulation.step_at(at));
         let stride = (last.saturating_sub(first) / MOMENTS).max(1);
         let (least, most) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -135,9 +139,9 @@ impl<'a> Watch<'a> {
                 continue;
             }
             let value = match quantity.column {
-                Column::OfSteps(column) => column.value.number(row),
-                Column::OfMeasures(_) if !is_moment => continue,
-                Column::OfMeasures(column) => {
+                RecordedColumn::OfSteps(column) => column.value.number(row),
+                RecordedColumn::OfMeasures(_) if !is_moment => continue,
+                RecordedColumn::OfMeasures(column) => {
                     let moment = || PileMeasures::of(&simulation.moment());
                     column.value.number(measured.get_or_insert_with(moment))
                 }
@@ -154,7 +158,7 @@ impl<'a> Watch<'a> {
 
     /// The quantities' values; what is not finite is none.
     pub(super) fn values(&self) -> Vec<f64> {
-        let of = |(quantity, found): (&Quantity, &Found)| match quantity.statistic {
+        let of = |(quantity, found): (&BudgetQuantity, &Found)| match quantity.statistic {
             Statistic::AtEnd => found.latest,
             Statistic::Mean => found.sum / found.count as f64,
             // A comparison with what is not a number is false, in whatever order.
@@ -175,10 +179,10 @@ mod tests {
     use std::ops::ControlFlow;
 
     fn values(names: &[&str], window: Window) -> (Vec<f64>, Vec<Observables>) {
-        let quantities: Vec<Quantity> =
+        let quantities: Vec<BudgetQuantity> =
             names.iter().map(|name| name.parse().expect("a quantity")).collect();
         let mut simulation = built_in("column").unwrap().simulation().unwrap();
-        let mut watch = Watch::new(&quantities, window, &simulation);
+        let mut watch = QuantityWatch::new(&quantities, window, &simulation);
         let mut rows = Vec::new();
         let steps = watch.steps();
         let run = simulation.run(steps, |simulation| {
@@ -223,7 +227,7 @@ mod tests {
     #[test]
     fn unknown_quantities_are_refused_with_what_there_is() {
         for text in ["slumpp", "median(slump)", "max(slump", "max(step)", "time", ""] {
-            let error = text.parse::<Quantity>().err().expect(text).to_string();
+            let error = text.parse::<BudgetQuantity>().err().expect(text).to_string();
             assert!(error.starts_with("quantity is") && error.contains("coordination"), "{error}");
         }
     }

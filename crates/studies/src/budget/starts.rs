@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 use super::causes::Variant;
-use super::quantity::{Quantity, Watch, Window};
+use super::quantity::{BudgetQuantity, QuantityWatch, Window};
 use crate::config::{BaseScene, Config};
 use crate::error::{Error, Result};
 use crate::number;
@@ -111,7 +111,7 @@ impl Starts {
         &self,
         start: Option<u64>,
         variant: Option<&Variant>,
-        quantities: &[Quantity],
+        quantities: &[BudgetQuantity],
         window: Window,
     ) -> Result<String> {
         let names: Vec<&str> = quantities.iter().map(|quantity| &*quantity.name).collect();
@@ -142,10 +142,14 @@ impl Starts {
 }
 
 /// Runs a scene to the end of the window.
-pub(super) fn run(scene: &Scene, quantities: &[Quantity], window: Window) -> Result<RunValues> {
+pub(super) fn run(
+    scene: &Scene,
+    quantities: &[BudgetQuantity],
+    window: Window,
+) -> Result<RunValues> {
     let begun = Instant::now();
     let mut simulation = scene.simulation()?;
-    let mut watch = Watch::new(quantities, window, &simulation);
+    let mut watch = QuantityWatch::new(quantities, window, &simulation);
     let mut tally = Tally::default();
     let steps = watch.steps();
     let ended = simulation.run(steps, |simulation| {

@@ -4,7 +4,7 @@ use super::answer::{
     CauseRow, Design, QuantityBudget, SMOOTH, Trust, halvings, is_inside, is_seen,
 };
 use super::causes::{Cause, DIVISORS, Share, short};
-use super::collect::{Ended, Runs};
+use super::collect::{BudgetEnd, Runs};
 
 /// A number with as many decimals as half an interval has meaning for.
 fn rounded(number: f64, half: f64) -> String {
@@ -42,7 +42,7 @@ fn listed(names: &[String]) -> String {
 pub(super) struct Words<'a> {
     pub budget: &'a QuantityBudget,
     pub runs: &'a Runs,
-    pub ended: Ended,
+    pub ended: BudgetEnd,
     pub design: &'a Design<'a>,
     pub number: usize,
 }
@@ -286,9 +286,9 @@ impl Words<'_> {
         let percent = 100.0 * (1.0 - super::collect::OUTSIDE);
         let all = format!("All intervals hold together in {percent:.0} % of budgets.");
         match self.ended {
-            Ended::Within => all,
-            Ended::Stopped => format!("{all} More is on its way."),
-            Ended::Cost | Ended::Failed => {
+            BudgetEnd::Within => all,
+            BudgetEnd::Stopped => format!("{all} More is on its way."),
+            BudgetEnd::Cost | BudgetEnd::Failed => {
                 let widest = (0..self.runs.all.len()).filter(|&series| self.runs.is_begun(series));
                 let widest = widest.max_by(|one, other| {
                     self.runs.excess(*one).total_cmp(&self.runs.excess(*other))

@@ -264,7 +264,7 @@ impl BlockDescent {
         number: usize,
         contact: &Touching,
         bias: f64,
-    ) -> Push {
+    ) -> ContactPush {
         let row = problem.rows.get(number);
         let i = &problem.bodies.now[row.i as usize];
         let [normal_velocity, tangential_velocity] = if number < problem.rows.fixed.len() {
@@ -276,7 +276,7 @@ impl BlockDescent {
         let closing = normal_velocity - contact.wall_speed + bias;
         let wanted = contact.impulse[0] + contact.capture_speed - stiffness[0] * closing;
         let shifted = law::signorini(wanted);
-        let mut push = Push {
+        let mut push = ContactPush {
             impulse: [shifted - contact.capture_speed, 0.0],
             violation: [closing, 0.0],
             is_cut: [wanted < 0.0, true],
@@ -296,7 +296,7 @@ impl BlockDescent {
 
 /// How a contact pushes: (λ_n, λ_t), m/s, the relative velocities (c_n, c_t) that it answers, m/s, and whether its
 /// bounds cut them.
-struct Push {
+struct ContactPush {
     impulse: [f64; 2],
     violation: [f64; 2],
     is_cut: [bool; 2],

@@ -25,32 +25,32 @@ const COUNTED: [i64; 2] = [6, 7];
 type Checked<T> = Result<T, String>;
 
 /// A value, as far as it matters here.
-enum Value {
+enum FieldValue {
     Whole(i64),
     Text,
     Switch,
-    List(Vec<Value>),
-    Fields(Vec<(i64, Value)>),
+    List(Vec<FieldValue>),
+    Fields(Vec<(i64, FieldValue)>),
     Other,
 }
 
 /// What a decoder takes a value for by the number of its field, whatever kind the file says that it is of. Where the two
 /// differ, a decoder is out of step, and reads anything as anything.
-enum Shape {
+enum FieldShape {
     Whole,
     Text,
     Switch,
     /// A byte, or an eight-byte number.
     Plain,
-    List(&'static Shape),
-    Fields(&'static [(i64, Shape)]),
+    List(&'static FieldShape),
+    Fields(&'static [(i64, FieldShape)]),
     /// Of no table of discs: keys and maps.
     Refused,
 }
 
-use Shape::{Fields, List, Plain, Refused, Switch, Text, Whole};
+use FieldShape::{Fields, List, Plain, Refused, Switch, Text, Whole};
 
-const STATISTICS: Shape = Fields(&[
+const STATISTICS: FieldShape = Fields(&[
     (1, Text),
     (2, Text),
     (3, Whole),
@@ -60,8 +60,8 @@ const STATISTICS: Shape = Fields(&[
     (7, Switch),
     (8, Switch),
 ]);
-const TIME: Shape = Fields(&[(1, Switch), (2, Fields(&[]))]);
-const LOGICAL_TYPE: Shape = Fields(&[
+const TIME: FieldShape = Fields(&[(1, Switch), (2, Fields(&[]))]);
+const LOGICAL_TYPE: FieldShape = Fields(&[
     (5, Fields(&[(1, Whole), (2, Whole)])),
     (7, TIME),
     (8, TIME),
@@ -70,11 +70,11 @@ const LOGICAL_TYPE: Shape = Fields(&[
     (17, Refused),
     (18, Refused),
 ]);
-const PAIR: Shape = Fields(&[(1, Text), (2, Text)]);
-const SORTED: Shape = Fields(&[(1, Whole), (2, Switch), (3, Switch)]);
-const PAGE_COUNT: Shape = Fields(&[(1, Whole), (2, Whole), (3, Whole)]);
-const SIZES: Shape = Fields(&[(1, Whole), (2, List(&Whole)), (3, List(&Whole))]);
-const COLUMN: Shape = Fields(&[
+const PAIR: FieldShape = Fields(&[(1, Text), (2, Text)]);
+const SORTED: FieldShape = Fields(&[(1, Whole), (2, Switch), (3, Switch)]);
+const PAGE_COUNT: FieldShape = Fields(&[(1, Whole), (2, Whole), (3, Whole)]);
+const SIZES: FieldShape = Fields(&[(1, Whole), (2, List(&Whole)), (3, List(&Whole))]);
+const COLUMN: FieldShape = Fields(&[
     (1, Whole),
     (2, List(&Whole)),
     (3, List(&Text)),
@@ -93,7 +93,7 @@ const COLUMN: Shape = Fields(&[
     (16, SIZES),
     (17, Refused),
 ]);
-const CHUNK: Shape = Fields(&[
+const CHUNK: FieldShape = Fields(&[
     (1, Text),
     (2, Whole),
     (3, COLUMN),
@@ -104,7 +104,7 @@ const CHUNK: Shape = Fields(&[
     (8, Refused),
     (9, Text),
 ]);
-const ROW_GROUP: Shape = Fields(&[
+const ROW_GROUP: FieldShape = Fields(&[
     (1, List(&CHUNK)),
     (2, Whole),
     (3, Whole),
@@ -113,7 +113,7 @@ const ROW_GROUP: Shape = Fields(&[
     (6, Whole),
     (7, Whole),
 ]);
-const SCHEMA_ELEMENT: Shape = Fields(&[
+const SCHEMA_ELEMENT: FieldShape = Fields(&[
     (1, Whole),
     (2, Whole),
     (3, Whole),
@@ -125,7 +125,7 @@ const SCHEMA_ELEMENT: Shape = Fields(&[
     (9, Whole),
     (10, LOGICAL_TYPE),
 ]);
-const FOOTER: Shape = Fields(&[
+const FOOTER: FieldShape = Fields(&[
     (1, Whole),
     (2, List(&SCHEMA_ELEMENT)),
     (3, Whole),
@@ -136,7 +136,7 @@ const FOOTER: Shape = Fields(&[
     (8, Refused),
     (9, Text),
 ]);
-const PAGE_HEADER: Shape = Fields(&[
+const PAGE_HEADER: FieldShape = Fields(&[
     (1, Whole),
     (2, Whole),
     (3, Whole),
@@ -159,16 +159,16 @@ const PAGE_HEADER: Shape = Fields(&[
     ),
 ]);
 
-impl Shape {
+impl FieldShape {
     /// Whether a value is of this shape; what a decoder does not know may be anything, and be there once.
-    fn fits(&self, value: &Value) -> bool {
+    fn fits(&self, value: &FieldValue) -> bool {
         match (self, value) {
-            (Whole, Value::Whole(_))
-            | (Text, Value::Text)
-            | (Switch, Value::Switch)
-            | (Plain, Value::Other) => true,
-            (List(shape), Value::List(items)) => items.iter().all(|item| shape.fits(item)),
-            (Fields(shapes), Value::Fields(fields)) => fields.iter().all(|(id, value)| {
+            (Whole, FieldValue::Whole(_))
+            | (Text, FieldValue::Text)
+            | (Switch, FieldValue::Switch)
+            | (Plain, FieldValue::Other) => true,
+            (List(shape), FieldValue::List(items)) => items.iter().all(|item| shape.fits(item)),
+            (Fields(shapes), FieldValue::Fields(fields)) => fields.iter().all(|(id, value)| {
                 let shape = shapes.iter().find(|(known, _)| known == id);
                 let is_single = fields.iter().filter(|(other, _)| other == id).count() == 1;
                 is_single && shape.is_none_or(|(_, shape)| shape.fits(value))
@@ -178,7 +178,7 @@ impl Shape {
     }
 }
 
-impl Value {
+impl FieldValue {
     fn field(&self, wanted: i64) -> Option<&Self> {
         let Self::Fields(fields) = self else { return None };
         fields.iter().find(|(id, _)| *id == wanted).map(|(_, value)| value)
@@ -222,7 +222,7 @@ impl Reader<'_> {
         Ok((number >> 1) as i64 ^ -((number & 1) as i64))
     }
 
-    fn structure(&mut self, depth: usize) -> Checked<Value> {
+    fn structure(&mut self, depth: usize) -> Checked<FieldValue> {
         if depth == 0 {
             return Err(format!("has headers nested deeper than {MOST_DEPTH}"));
         }
@@ -230,26 +230,27 @@ impl Reader<'_> {
         loop {
             let head = self.byte()?;
             if head == 0 {
-                return Ok(Value::Fields(fields));
+                return Ok(FieldValue::Fields(fields));
             }
             if head & 15 == 0 {
                 return Err("has a header of kind 0".into());
             }
             id = if head >> 4 == 0 { self.whole()? } else { id.wrapping_add(i64::from(head >> 4)) };
             // Whether it is so is in the kind.
-            let value = if head & 15 < 3 { Value::Switch } else { self.value(head & 15, depth)? };
+            let value =
+                if head & 15 < 3 { FieldValue::Switch } else { self.value(head & 15, depth)? };
             fields.push((id, value));
         }
     }
 
-    fn value(&mut self, kind: u8, depth: usize) -> Checked<Value> {
+    fn value(&mut self, kind: u8, depth: usize) -> Checked<FieldValue> {
         match kind {
-            1..=3 => self.byte().map(|_| Value::Other),
-            4..=6 => self.whole().map(Value::Whole),
-            7 => self.skip(8).map(|()| Value::Other),
+            1..=3 => self.byte().map(|_| FieldValue::Other),
+            4..=6 => self.whole().map(FieldValue::Whole),
+            7 => self.skip(8).map(|()| FieldValue::Other),
             8 => {
                 let length = self.varint()?;
-                self.skip(length).map(|()| Value::Text)
+                self.skip(length).map(|()| FieldValue::Text)
             }
             9 | 10 => self.list(depth),
             12 => self.structure(depth - 1),
@@ -257,13 +258,16 @@ impl Reader<'_> {
         }
     }
 
-    fn list(&mut self, depth: usize) -> Checked<Value> {
+    fn list(&mut self, depth: usize) -> Checked<FieldValue> {
         let head = self.byte()?;
         let count = if head >> 4 == 15 { self.varint()? } else { u64::from(head >> 4) };
         if count > self.0.len() as u64 {
             return Err(format!("has a list of {count} in {} bytes", self.0.len()));
         }
-        (0..count).map(|_| self.value(head & 15, depth)).collect::<Checked<_>>().map(Value::List)
+        (0..count)
+            .map(|_| self.value(head & 15, depth))
+            .collect::<Checked<_>>()
+            .map(FieldValue::List)
     }
 }
 
@@ -271,7 +275,9 @@ impl Reader<'_> {
 pub(super) fn check_footer(footer: &[u8], bytes: u64) -> Checked<()> {
     let footer = Reader(footer).structure(MOST_DEPTH)?;
     check_shape(&FOOTER, &footer)?;
-    let Some(Value::List(schema)) = footer.field(2) else { return Err("has no schema".into()) };
+    let Some(FieldValue::List(schema)) = footer.field(2) else {
+        return Err("has no schema".into());
+    };
     // Children that are still to come, of each group that the element is in.
     let mut open: Vec<i64> = vec![1];
     for element in schema {
@@ -303,7 +309,7 @@ pub(super) fn check_footer(footer: &[u8], bytes: u64) -> Checked<()> {
     }
 }
 
-fn check_shape(shape: &Shape, header: &Value) -> Checked<()> {
+fn check_shape(shape: &FieldShape, header: &FieldValue) -> Checked<()> {
     let refuse = || "has a header with a field of another kind than it is of".to_owned();
     shape.fits(header).then_some(()).ok_or_else(refuse)
 }

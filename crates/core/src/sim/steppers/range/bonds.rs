@@ -18,7 +18,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::range::{Bond, Opening};
+use crate::contact::range::{Bond, OpeningMotion};
 use crate::sim::settings::Settings;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
@@ -236,7 +236,7 @@ impl BondLimits<'_> {
             let opens = BondOpening::of(problem, number, &motion, self.shocks);
             let stretch = if opens.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
-            let opening = Opening { left, speed: opens.speed, load: opens.load };
+            let opening = OpeningMotion { left, speed: opens.speed, load: opens.load };
             let capture_speed = strength * opens.part * problem.law.capture_speed();
             let bound = opening.bound(capture_speed, opens.part * time_step_secs);
             if bound < (1.0 - FALL) * before {
