@@ -261,3 +261,37 @@ pub(super) fn balance(all: &Measurements, name: &str, system: &str) -> Published
         (SourceKind::Exact, "a steady flow gains no momentum"),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::variants::SolveBudget;
+    use super::*;
+    use crate::fracture_work::fracture_work;
+    use crate::sim::Stepper;
+    use crate::solver::Method;
+
+    /// Under `range` E = η (δc/d)/I², with η = Bond/(2P).
+    #[test]
+    fn a_bond_takes_the_energy_that_its_layer_asks_for() {
+        let (bond, energy, inertial) = (6.0, 3.0, 0.08);
+        let kind = LayerKind { at: vec![], inertial, bond, breaking_energy: Some(energy) };
+        let cell = ShearCell { wide: 16, columns: 13, rows: 18 };
+        let layer = ShearedLayer { cell, kind, seed: 1 };
+        for stepper in [Stepper::Range, Stepper::Dem] {
+            let budget = SolveBudget::Sweeps(20);
+            let variant =
+                StepVariant { stepper, method: Method::Nsgs, time_step_secs: 1e-3, budget };
+            let scene = layer.scene(variant);
+            let of_nominal = scene.areal_density * 0.25 * PI * DIAMETER * DIAMETER;
+            let expected = energy * of_nominal * (layer.rate() * DIAMETER).powi(2);
+            let joules = fracture_work(&scene, scene.settings()).expect("a work");
+            assert!((joules / expected - 1.0).abs() < 1e-9, "{stepper}: {joules}, not {expected}");
+            if stepper == Stepper::Range {
+                let strength = bond / (2.0 * PRESSURE);
+                let found = strength * scene.parameters.debonding_distance / inertial.powi(2);
+                // Grains have sizes, and their mean mass is a few per cent above that of the mean size.
+                assert!((found / energy - 1.0).abs() < 0.1, "{found}");
+            }
+        }
+    }
+}
