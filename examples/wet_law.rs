@@ -43,18 +43,17 @@ enum Law {
     Wet,
 }
 
-/// Bond number and ρ.
-type Bonds = [f64; 2];
+/// What all laws share of a comparison.
+#[derive(Clone, Copy)]
+struct Contacts {
+    bond: f64,
+    restitution: f64,
+}
 
-fn slump(
-    grains: &[Grain],
-    law: Law,
-    [bond, restitution]: Bonds,
-    time_step_secs: f64,
-) -> Result<f64> {
+fn slump(grains: &[Grain], law: Law, contacts: Contacts, time_step_secs: f64) -> Result<f64> {
     let mut scene = pile_of(grains.to_vec(), NewPile::default().box_width_in_diameters)?;
-    let mut settings = scene.settings().with_bond(bond).over(time_step_secs);
-    settings.parameters.restitution = restitution;
+    let mut settings = scene.settings().with_bond(contacts.bond).over(time_step_secs);
+    settings.parameters.restitution = contacts.restitution;
     settings.parameters.debonding_distance = RANGE_IN_DIAMETERS;
     if let Law::Of(stepper) = law {
         settings.stepper = stepper;
@@ -85,20 +84,21 @@ fn main() -> Result<()> {
     let seeds: Vec<u64> = (1..=17).filter(|&seed| seed != NewPile::default().seed).collect();
     let pile = |&seed: &u64| settle(&NewPile { seed, ..NewPile::default() }, |_| true);
     let piles = seeds.par_iter().map(pile).collect::<Result<Vec<_>>>()?;
-    let of_piles = |law, bonds, time_step_secs| -> Result<Vec<f64>> {
-        piles.par_iter().map(|grains| slump(grains, law, bonds, time_step_secs)).collect()
+    let of_piles = |law, contacts, time_step_secs| -> Result<Vec<f64>> {
+        piles.par_iter().map(|grains| slump(grains, law, contacts, time_step_secs)).collect()
     };
     let laws = [
         ("moreau", Law::Of(Stepper::Moreau)),
         ("wet", Law::Wet),
         ("range", Law::Of(Stepper::Range)),
     ];
-    for [bond, restitution] in [[8.0, 0.1], [20.0, 0.1], [50.0, 0.1], [8.0, 0.5], [20.0, 0.5]] {
+    for (bond, restitution) in [(8.0, 0.1), (20.0, 0.1), (50.0, 0.1), (8.0, 0.5), (20.0, 0.5)] {
+        let contacts = Contacts { bond, restitution };
         let mut all = Vec::new();
         for (name, law) in laws {
             let begun = Instant::now();
-            let slumps = TIME_STEPS_SECS
-                .map(|time_step_secs| of_piles(law, [bond, restitution], time_step_secs));
+            let slumps =
+                TIME_STEPS_SECS.map(|time_step_secs| of_piles(law, contacts, time_step_secs));
             let [short, middle, long] = slumps;
             let [short, middle, long] = [short?, middle?, long?];
             println!(
