@@ -155,7 +155,7 @@ pub(super) enum StudyCommand {
             allow_negative_numbers = true
         )]
         time_steps_secs: Vec<f64>,
-        /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either]
+        /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either; auto certifies each step]
         #[arg(long, value_name = "N", value_delimiter = ',')]
         sweeps: Vec<u32>,
         /// Efforts: residuals that a step is solved to, within 1,000 sweeps
@@ -246,7 +246,7 @@ impl StudyCommand {
                 reproduce(&figures, &out, quick, VERSION, draw_snapshots)
             }
             Self::Chart { out, quick, large, only } => {
-                chart_speed(&ChartOptions { out, quick, large, only })
+                chart_speed(&ChartOptions { out, quick, large, only }, VERSION)
             }
             Self::Stability { scenes, out, table, quick } => {
                 stability(&scenes, out.as_deref(), table.as_deref(), quick)
@@ -260,16 +260,19 @@ impl StudyCommand {
                 time_steps_secs,
                 sweeps,
                 tolerances,
-            } => validate(&ValidateOptions {
-                experiments,
-                out,
-                quick,
-                stepper,
-                methods,
-                time_steps_secs,
-                sweeps,
-                tolerances,
-            }),
+            } => {
+                let options = ValidateOptions {
+                    experiments,
+                    out,
+                    quick,
+                    stepper,
+                    methods,
+                    time_steps_secs,
+                    sweeps,
+                    tolerances,
+                };
+                validate(&options, VERSION)
+            }
         }
     }
 }

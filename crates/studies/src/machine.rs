@@ -11,6 +11,8 @@ use crate::output::check_writable;
 
 #[derive(Clone, Debug)]
 pub(super) struct Machine {
+    /// The program's version and commit.
+    pub version: String,
     pub processor: String,
     pub cores: usize,
     /// UTC, year-month-day.
@@ -21,7 +23,7 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    pub(super) fn this() -> Result<Self> {
+    pub(super) fn this(version: &str) -> Result<Self> {
         let processor = processor();
         let program = std::env::current_exe().map_err(|error| Error::file("slump", error))?;
         let bytes = std::fs::read(&program).map_err(|error| Error::file(&program, error))?;
@@ -32,6 +34,7 @@ impl Machine {
         let arguments = std::env::args_os().skip(1).map(|it| it.to_string_lossy().into_owned());
         let arguments = arguments.collect::<Vec<_>>().join(" ");
         Ok(Self {
+            version: version.to_owned(),
             processor,
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
@@ -55,9 +58,9 @@ impl Machine {
     }
 
     pub(super) fn words(&self) -> String {
-        let Self { processor, cores, date, command, .. } = self;
+        let Self { version, processor, cores, date, command, .. } = self;
         let cores = if *cores == 1 { "1 core".into() } else { format!("{cores} cores") };
-        format!("{processor}, {cores}; {date}; {command}")
+        format!("slump {version}; {processor}, {cores}; {date}; {command}")
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) const REPORT: &str = "report.json";
 #[derive(Serialize)]
 struct SweepReport<'a> {
     program: &'static str,
-    version: &'a str,
+    version: String,
     processor: String,
     cores: usize,
     date: String,
@@ -60,7 +60,7 @@ struct RunGroup {
 /// # Errors
 /// Where it cannot be written.
 pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &str) -> Result<()> {
-    let Machine { processor, cores, date, command, .. } = Machine::this()?;
+    let Machine { version, processor, cores, date, command, .. } = Machine::this(version)?;
     let report = SweepReport {
         program: "slump",
         version,

@@ -68,9 +68,9 @@ pub fn reproduce(
     report.push_str(&closing(&studies));
     let _ = writeln!(
         report,
-        "\nMade by slump {version} in {:.0} s, studies that were there before not counted: {}.",
+        "\nMade in {:.0} s, studies that were there before not counted: {}.",
         started.elapsed().as_secs_f64(),
-        Machine::this()?.words()
+        Machine::this(version)?.words()
     );
     let path = folder.join("report.md");
     write_file(&path, report.as_bytes())?;

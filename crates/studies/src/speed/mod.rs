@@ -95,13 +95,13 @@ impl Bench<'_> {
     }
 }
 
-/// Measures and draws into a folder.
+/// Measures and draws into a folder. The charts say that `version` of the program made them.
 ///
 /// # Errors
 /// Where the folder cannot be written, or a simulation fails.
-pub fn chart_speed(options: &ChartOptions) -> Result<()> {
+pub fn chart_speed(options: &ChartOptions, version: &str) -> Result<()> {
     check_writable("out", &options.out)?;
-    let bench = Bench { options, machine: Machine::this()? };
+    let bench = Bench { options, machine: Machine::this(version)? };
     let is_wanted = |part| match part {
         _ if !options.only.is_empty() => options.only.contains(&part),
         ChartPart::Size => options.large,

@@ -80,11 +80,11 @@ pub fn experiment_names() -> Vec<&'static str> {
     EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
 }
 
-/// Runs experiments into a folder.
+/// Runs experiments into a folder. The report says that `version` of the program made it.
 ///
 /// # Errors
 /// Where a value is outside its range, the folder cannot be written, or a scene is not sound.
-pub fn validate(options: &ValidateOptions) -> Result<()> {
+pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
     let started = Instant::now();
     let ValidateOptions { experiments, out, quick, stepper, .. } = options;
     let ValidateOptions { methods, time_steps_secs, sweeps, tolerances, .. } = options;
@@ -97,7 +97,7 @@ pub fn validate(options: &ValidateOptions) -> Result<()> {
             *stepper == Stepper::Moreau || matches!(one.cases, ExperimentCases::Chosen(_))
         })
         .collect();
-    let machine = Machine::this()?;
+    let machine = Machine::this(version)?;
     let runner = machine.runner(out, *quick, "validation")?;
     let ran = run_all(&wanted, &variants, *quick, &runner)?;
     let sheet = report::sheet(&ran, &machine.words());

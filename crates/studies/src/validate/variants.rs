@@ -10,12 +10,17 @@ use crate::solver::{Method, SolverSettings};
 /// Sweeps within which a step is to be solved to a residual.
 const MOST_SWEEPS: u32 = 1_000;
 
+/// What is run where nothing is asked for of a method that certifies nothing.
+const UNASKED: [SolveBudget; 2] = [SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SolveBudget {
     /// By so many sweeps, whatever they come to.
     Sweeps(u32),
     /// To this residual, within [`MOST_SWEEPS`].
     Residual(f64),
+    /// As every step is solved unasked: with a certificate of its velocities.
+    Certified,
 }
 
 impl SolveBudget {
@@ -24,6 +29,7 @@ impl SolveBudget {
             Self::Sweeps(1) => "1 sweep".to_owned(),
             Self::Sweeps(count) => format!("{count} sweeps"),
             Self::Residual(residual) => format!("residual {residual:e}"),
+            Self::Certified => "certified".to_owned(),
         }
     }
 }
@@ -53,12 +59,14 @@ impl StepVariant {
 
     pub(super) fn apply(&self, scene: &mut Scene) {
         scene.parameters.time_step_secs = self.time_step_secs;
-        let (tolerance, max_sweeps) = match self.budget {
-            SolveBudget::Sweeps(count) => (f64::MIN_POSITIVE, count),
-            SolveBudget::Residual(residual) => (residual, MOST_SWEEPS),
-        };
+        let to_residual =
+            |tolerance, max_sweeps| SolverSettings::to_residual(self.method, tolerance, max_sweeps);
         scene.stepper = self.stepper;
-        scene.solver = SolverSettings::to_residual(self.method, tolerance, max_sweeps);
+        scene.solver = match self.budget {
+            SolveBudget::Sweeps(count) => to_residual(f64::MIN_POSITIVE, count),
+            SolveBudget::Residual(residual) => to_residual(residual, MOST_SWEEPS),
+            SolveBudget::Certified => SolverSettings::default().by(self.method),
+        };
         scene.set_settings(scene.settings().with_only_what_is_taken());
     }
 }
@@ -95,11 +103,8 @@ pub(super) fn step_variants(
     }
     let sweeps = sweeps.iter().map(|&count| SolveBudget::Sweeps(count));
     let tolerances = tolerances.iter().map(|&residual| SolveBudget::Residual(residual));
-    let mut budgets: Vec<SolveBudget> = sweeps.chain(tolerances).collect();
-    if budgets.is_empty() {
-        budgets = vec![SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
-        budgets.truncate(if stepper.reads("solver") { 2 } else { 1 });
-    }
+    let budgets: Vec<SolveBudget> = sweeps.chain(tolerances).collect();
+    let unasked: &[SolveBudget] = if stepper.reads("solver") { &UNASKED } else { &UNASKED[..1] };
     let methods = if methods.is_empty() { &[Method::Nsgs] } else { methods };
     let time_steps_secs: &[f64] = match (time_steps_secs.is_empty(), quick) {
         (false, _) => time_steps_secs,
@@ -110,6 +115,11 @@ pub(super) fn step_variants(
     for &method in methods {
         for &time_step_secs in time_steps_secs {
             let of = |&budget| StepVariant { stepper, method, time_step_secs, budget };
+            let budgets = match (budgets.is_empty(), method) {
+                (false, _) => &budgets,
+                (true, Method::Auto) => &[SolveBudget::Certified][..],
+                (true, _) => unasked,
+            };
             variants.extend(budgets.iter().map(of));
         }
     }
@@ -143,6 +153,9 @@ mod tests {
         assert_eq!(variants[7].words(), "newton, Δt 1e-4 s, residual 1e-6");
         let one = step_variants(true, Stepper::Moreau, &[], &[], &[7], &[]).expect("a choice");
         assert!(one.len() == 1 && one[0].budget == SolveBudget::Sweeps(7));
+        let auto = [Method::Auto];
+        let auto = step_variants(true, Stepper::Moreau, &auto, &[], &[], &[]).expect("a choice");
+        assert_eq!((auto.len(), auto[0].words()), (1, "auto, Δt 1e-3 s, certified".to_owned()));
         let words = |stepper| -> Vec<String> {
             let chosen = step_variants(true, stepper, &[], &[], &[], &[]).expect("a choice");
             chosen.iter().map(StepVariant::words).collect()
