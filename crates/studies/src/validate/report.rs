@@ -160,7 +160,11 @@ pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     let [slowest, fastest] = numbers(ExperimentRuns::speed);
     let mut charts = Vec::new();
     for (label, ends, number) in [
-        ("mean relative error", [LEAST_ERROR, MOST_ERROR], error as fn(&ExperimentRuns) -> f64),
+        (
+            "mean relative error",
+            [0.5 * LEAST_ERROR, MOST_ERROR],
+            error as fn(&ExperimentRuns) -> f64,
+        ),
         (
             "simulated seconds per second",
             [0.5 * slowest.min(1e3), 2.0 * fastest.max(1e-3)],
@@ -177,7 +181,7 @@ pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
                 None => ("methods of its own".to_owned(), INK, Look::Rings(8)),
                 Some(variant) => look_of(&variant, &variants),
             };
-            let x = number(runs).clamp(ends[0], ends[1]);
+            let x = number(runs);
             let place = points(x.is_finite().then_some((x, -(row as f64))));
             chart.layers.push(Layer::curve(name, place, colour, look));
         }
@@ -192,11 +196,11 @@ pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     Sheet { size: (1300, 120 + 46 * names.len() as u32), charts, caption }
 }
 
-/// Mean relative error of the quantities of an experiment by one variant; NaN where one has no value, since the others
-/// alone would look better than they are.
+/// Mean relative error of the quantities of an experiment by one variant, as it is drawn; NaN where one has no value, since
+/// the others alone would look better than they are.
 fn error(runs: &ExperimentRuns) -> f64 {
     let errors = runs.judged().into_iter().filter_map(|(quantity, _)| quantity.error());
-    mean(&errors.collect::<Vec<_>>()).mean
+    mean(&errors.collect::<Vec<_>>()).mean.clamp(LEAST_ERROR, MOST_ERROR)
 }
 
 /// A colour a method and time step; discs for sweeps and rings for residuals, the larger the more work.
