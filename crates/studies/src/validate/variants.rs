@@ -140,6 +140,8 @@ fn check_different<T: PartialEq + Display + Debug>(field: &str, values: &[T]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::stability::dry;
+    use crate::validate::watched::loose;
 
     #[test]
     fn what_is_asked_is_crossed_and_the_rest_is_chosen() {
@@ -156,6 +158,10 @@ mod tests {
         let auto = [Method::Auto];
         let auto = step_variants(true, Stepper::Moreau, &auto, &[], &[], &[]).expect("a choice");
         assert_eq!((auto.len(), auto[0].words()), (1, "auto, Δt 1e-3 s, certified".to_owned()));
+        let mut scene = dry("packing", loose(10, 5.0, 1));
+        scene.solver = SolverSettings::PAPER;
+        auto[0].apply(&mut scene);
+        assert_eq!(scene.solver, SolverSettings::default());
         let words = |stepper| -> Vec<String> {
             let chosen = step_variants(true, stepper, &[], &[], &[], &[]).expect("a choice");
             chosen.iter().map(StepVariant::words).collect()
