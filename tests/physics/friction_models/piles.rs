@@ -311,3 +311,25 @@ fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
         }
     }
 }
+
+/// Bounds that come from impulses which friction wedged let the next ones be larger still.
+#[test]
+fn discs_that_friction_wedges_press_each_other_no_harder_from_step_to_step() {
+    for (bond, friction, restitution) in [(0.0, 10.0, 0.1), (20.0, 5.0, 0.9), (20.0, 10.0, 0.1)] {
+        let mut pile = built_in("pile").expect("a scene");
+        (pile.parameters.bond, pile.parameters.friction) = (bond, friction);
+        pile.parameters.restitution = restitution;
+        let mut run = start(&pile);
+        let weight: f64 = run.grains().masses.iter().sum::<f64>() * G;
+        let of_step = weight * pile.parameters.time_step_secs;
+        let mut most = 0f64;
+        for step in 0..120 {
+            let row = *run.step().expect("a finite state");
+            assert!(row.converged, "Bond {bond}, mu {friction}, step {step}: {row:?}");
+            let impulses = run.contacts().impulses().iter().map(|impulse| impulse.normal);
+            most = impulses.fold(most, f64::max);
+        }
+        assert!(most > of_step, "Bond {bond}, mu {friction}: none is wedged, {}", most / of_step);
+        assert!(most < 100.0 * of_step, "Bond {bond}, mu {friction}: {} weights", most / of_step);
+    }
+}
