@@ -17,8 +17,6 @@ pub(super) struct Budget {
     /// What it costs, in time and in accuracy.
     pub hint: &'static str,
     pub settings: SolverSettings,
-    /// True where every step is certain to be solved.
-    pub is_certain: bool,
 }
 
 impl Budget {
@@ -32,11 +30,6 @@ impl Budget {
         }
         self.settings
     }
-
-    /// True where it keeps what its name says there.
-    pub(super) fn is_to_be_had(&self, surroundings: &Surroundings) -> bool {
-        !self.is_certain || !surroundings.moving.iter().any(|motion| motion.is_driven)
-    }
 }
 
 /// Forty sweeps, by all cores.
@@ -45,7 +38,6 @@ pub(super) const FAST: Budget = Budget {
     hint: "40 sweeps a step, solved or not, for large piles, whose slump hardly feels it; that of a small pile may be \
            off by a tenth. A step of 10,000 grains takes some 10 ms.",
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
-    is_certain: false,
 };
 
 /// As the paper's figures are drawn.
@@ -54,7 +46,6 @@ pub(super) const PAPER: Budget = Budget {
     hint: "The paper's scheme: Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are \
            computed, the same to the last digit. Some steps stay unsolved.",
     settings: SolverSettings::PAPER,
-    is_certain: false,
 };
 
 /// Coulomb's law itself.
@@ -67,7 +58,6 @@ pub(super) const COULOMB: Budget = Budget {
         max_sweeps: 500,
         ..SolverSettings::DEFAULT
     },
-    is_certain: false,
 };
 
 /// What everything begins with.
@@ -76,7 +66,6 @@ pub(super) const CERTIFIED: Budget = Budget {
     hint: "Each step is solved within bounds of friction that a first solve gives (tresca), and velocities are \
            certain to 1e-4 of the root of g d. Slumps are those of Coulomb's law where that is solved.",
     settings: SolverSettings::DEFAULT,
-    is_certain: true,
 };
 
 /// All of them.
@@ -133,12 +122,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_certain_is_to_be_had_where_no_force_drives_a_wall() {
-        assert!(CERTIFIED.is_to_be_had(&surroundings("pile")));
-        assert!(!CERTIFIED.is_to_be_had(&surroundings("shear")));
-    }
-
-    #[test]
     fn every_effort_is_taken_by_every_scene() {
         assert_eq!(FAST.among(&surroundings("pile")), FAST.settings);
         let scenes = crate::scene::SCENES.iter();
@@ -154,8 +137,7 @@ mod tests {
             let mut run = scene.simulation().expect("a sound scene");
             let uses_method = run.settings().stepper.uses_method();
             let surroundings = run.snapshot().surroundings;
-            let to_be_had = BUDGETS.iter().filter(|effort| effort.is_to_be_had(&surroundings));
-            for effort in to_be_had.filter(|_| uses_method) {
+            for effort in BUDGETS.iter().filter(|_| uses_method) {
                 let solver = effort.among(&surroundings);
                 run.set_solver(solver).unwrap_or_else(|error| panic!("{name}: {error}"));
                 assert_eq!(solver.max_sweeps, effort.settings.max_sweeps, "{name}");

@@ -108,7 +108,7 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     })
     .response
     .on_disabled_hover_text(format!("{} solves Coulomb's law alone.", method.name));
-    if settings.solver.model(false).is_taken_anew() {
+    if settings.solver.model().is_taken_anew() {
         setting_control::show(ui, about("model-solves"), settings, start);
     }
 }
@@ -133,10 +133,7 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
         for effort in BUDGETS {
             let Budget { name, hint, .. } = effort;
             let solver = effort.among(surroundings);
-            let button = egui::Button::selectable(settings.solver == solver, name);
-            let added = ui.add_enabled(effort.is_to_be_had(surroundings), button);
-            let added = added.on_disabled_hover_text("Not where a force drives a wall.");
-            if added.on_hover_text(hint).clicked() {
+            if ui.selectable_label(settings.solver == solver, name).on_hover_text(hint).clicked() {
                 settings.solver = solver;
             }
         }

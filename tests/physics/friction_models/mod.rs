@@ -44,7 +44,7 @@ fn what_does_not_go_with_a_model_is_refused_in_one_sentence() {
     ];
     refuses(&good, &cases);
     let tresca = SolverSettings { friction_model: FrictionModel::Tresca, ..good.solver };
-    assert_eq!(tresca.by(Method::Newton).model(false), FrictionModel::Coulomb);
+    assert_eq!(tresca.by(Method::Newton).model(), FrictionModel::Coulomb);
 }
 
 #[test]

@@ -79,6 +79,45 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
     }
 }
 
+/// A wall that comes askew, so that impulses along both directions of a contact move it.
+#[test]
+fn sweeps_and_the_interior_point_move_a_wall_alike_within_bounds_of_friction() {
+    let of_grain = std::f64::consts::PI * 1e-4;
+    for (mass_ratio, restitution, damping) in
+        [(1e-2, 0.0, 0.0), (0.1, 0.5, 0.3), (1.0, 0.9, 0.0), (30.0, 0.1, 5.0)]
+    {
+        let mut scene = pressed(1.0);
+        scene.parameters.restitution = restitution;
+        let lid = by_force(DVec2::new(0.6, -0.8), 1.0, mass_ratio * of_grain);
+        *drive_of(&mut scene) = Drive { damping, ..lid };
+        for (grain, number) in scene.grains.iter_mut().zip(1..) {
+            let turn = 2.4 * f64::from(number);
+            grain.velocity = 0.2 * DVec2::new(turn.sin(), turn.cos());
+        }
+        let begun = after(&scene, 1);
+        let solved = [Method::Nsgs, Method::InteriorPoint].map(|method| {
+            let mut run = begun.clone();
+            let tight = SolverSettings { max_sweeps: 1_000_000, ..solved_by(method, 1e-11) };
+            run.set_solver(SolverSettings { friction_model: FrictionModel::Tresca, ..tight })
+                .expect("both take it");
+            let row = *run.step().expect("a finite state");
+            assert!(row.converged, "{method}, {mass_ratio}: {row:?}");
+            assert!(carried(&run, 1) > 0.01, "{method}, {mass_ratio}: grains push the wall");
+            run
+        });
+        let [by_sweeps, by_path] = &solved;
+        let what = format!("{mass_ratio}, {restitution}, {damping}");
+        let changed = (drive(by_path).speed - drive(&begun).speed).abs();
+        assert!(changed > 1e-5, "{what}: the wall's speed changes, by {changed:e}");
+        let apart = (drive(by_path).speed - drive(by_sweeps).speed).abs();
+        assert!(apart < 1e-3 * changed, "{what}: the wall goes {apart:e} m/s apart");
+        for grain in 0..scene.grains.len() {
+            let apart = (by_path.velocity(grain) - by_sweeps.velocity(grain)).length();
+            assert!(apart < 1e-7, "{what}, grain {grain}: {apart:e} m/s");
+        }
+    }
+}
+
 #[test]
 fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     let grain = Grain::at_rest(-10.0 * DVec2::Y, 0.1);

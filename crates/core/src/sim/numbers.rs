@@ -16,7 +16,7 @@ impl Simulation {
     /// picks.
     pub fn picked_method(&self) -> Method {
         let Settings { solver, .. } = &self.settings;
-        let model = solver.model(self.is_driven());
+        let model = solver.model();
         picked(solver, model, self.state.contacts.contacts().len(), self.is_driven())
     }
 

@@ -218,9 +218,9 @@ impl Settings {
             let takers = METHODS.iter().filter(|info| info.takes_drives).map(|info| info.name);
             return refuse("solver", self.solver.method.to_string(), takers.collect());
         }
-        let model = self.solver.model(true);
-        if model != FrictionModel::Coulomb {
-            return refuse("friction-model", model.to_string(), vec!["coulomb"]);
+        let model = self.solver.model();
+        if model.is_on_cone() {
+            return refuse("friction-model", model.to_string(), vec!["coulomb", "tresca"]);
         }
         if self.remedies.sequential_impacts {
             return refuse("sequential-impacts", "given".into(), vec!["left out"]);

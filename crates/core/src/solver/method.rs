@@ -166,6 +166,7 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
         },
         MethodInfo {
             takes_models: true,
+            takes_drives: true,
             ..known(
                 Method::InteriorPoint,
                 OfSettings,

@@ -24,7 +24,7 @@ words! {
     #[derive(Default)]
     pub enum FrictionModel {
         #[default]
-        OfMethod = "of-method", "tresca where the solver is auto and no force drives a wall, else coulomb";
+        OfMethod = "of-method", "tresca where the solver is auto, else coulomb";
         Coulomb = "coulomb",
             "Coulomb's law itself (M. Jean, 1999); not convex, so a large step may not be solved in any time";
         Tresca = "tresca",
@@ -183,7 +183,7 @@ impl SolverSettings {
     /// Names the field, its value and what it may be.
     pub fn validate(&self) -> Result<()> {
         self.validate_each()?;
-        let (method, friction_model) = (self.method, self.model(false));
+        let (method, friction_model) = (self.method, self.model());
         if friction_model != FrictionModel::Coulomb && !method.info().takes_models {
             let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
             let takers: Vec<_> = takers.collect();
@@ -196,12 +196,10 @@ impl SolverSettings {
         Ok(())
     }
 
-    /// The model of friction that steps are solved under, where a force drives a wall or none does.
-    pub fn model(&self, is_driven: bool) -> FrictionModel {
+    /// The model of friction that steps are solved under.
+    pub fn model(&self) -> FrictionModel {
         match self.friction_model {
-            FrictionModel::OfMethod if self.method == Method::Auto && !is_driven => {
-                FrictionModel::Tresca
-            }
+            FrictionModel::OfMethod if self.method == Method::Auto => FrictionModel::Tresca,
             FrictionModel::OfMethod => FrictionModel::Coulomb,
             model => model,
         }
@@ -209,7 +207,7 @@ impl SolverSettings {
 
     /// True where steps may be solved under another model of friction than Coulomb's law.
     pub(crate) fn may_solve_models(&self) -> bool {
-        self.model(false) != FrictionModel::Coulomb
+        self.model() != FrictionModel::Coulomb
     }
 
     /// The same without a model of friction of its own, which leaves it to the method.

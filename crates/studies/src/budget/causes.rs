@@ -3,7 +3,7 @@
 use crate::fracture_work::{fracture_work, with_fracture_work};
 use crate::scene::{Deposition, NewPile, Scene};
 use crate::sim::{Settings, Stepper};
-use crate::solver::{FrictionModel, Method, SolverSettings, StopTest};
+use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::FrictionCone;
 
 /// Whose share it is.
@@ -83,8 +83,6 @@ pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
 /// How much better steps are solved, to see what they leave unsolved: a bound on velocities of 1e-7 √(g d) is more than
 /// rounding lets some steps have.
 const TIGHTER: f64 = 1e-2;
-/// The residual that Coulomb's law is solved to, to see the same where a force drives a wall.
-const TIGHTEST_RESIDUAL: f64 = 1e-9;
 /// Below about this many g·Δt restitution stands for no bounce that anyone could see.
 const THRESHOLD: f64 = 2.0;
 
@@ -92,7 +90,6 @@ const THRESHOLD: f64 = 2.0;
 /// `resizes` is true where their number can be changed.
 pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
     let base = scene.settings();
-    let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
     let mut all = Vec::new();
     let mut add = |cause, label: String, settings: Settings, cost| {
         let mut changed = scene.clone();
@@ -103,8 +100,8 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
         }
     };
     if base.stepper.uses_method() {
-        let settings = tighter(base, is_driven);
-        let certifies = settings.solver.model(is_driven) != base.solver.model(is_driven);
+        let settings = tighter(base);
+        let certifies = settings.solver.model() != base.solver.model();
         let label = if certifies { "steps certified" } else { "steps solved 100 times better" };
         add(Cause::Unsolved, label.into(), settings, 2.0);
     }
@@ -131,7 +128,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     }
     if rubs && base.stepper.reads("friction-model") {
         let mut settings = base;
-        let is_coulomb = base.solver.model(is_driven) == FrictionModel::Coulomb;
+        let is_coulomb = base.solver.model() == FrictionModel::Coulomb;
         settings.solver.method = Method::Auto;
         settings.solver.friction_model =
             if is_coulomb { FrictionModel::Tresca } else { FrictionModel::Coulomb };
@@ -172,13 +169,10 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
 }
 
 /// The same problems solved so well that nothing is left of them.
-fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
+fn tighter(mut settings: Settings) -> Settings {
     let solver = &mut settings.solver;
-    if solver.model(is_driven) != FrictionModel::Coulomb {
+    if solver.model() != FrictionModel::Coulomb {
         solver.tolerance *= TIGHTER;
-    } else if is_driven {
-        (solver.method, solver.friction_model) = (Method::Auto, FrictionModel::Coulomb);
-        (solver.stop, solver.tolerance) = (StopTest::Residual, TIGHTEST_RESIDUAL);
     } else {
         // Coulomb's law has solutions out of reach; within bounds of friction every step has one.
         *solver = SolverSettings {
@@ -275,7 +269,7 @@ mod tests {
             let all = variants(&pile, None, false);
             let better = all.iter().find(|variant| variant.cause == Cause::Unsolved).unwrap();
             assert_eq!(better.label, label);
-            assert_eq!(better.settings.solver.model(false), FrictionModel::Tresca);
+            assert_eq!(better.settings.solver.model(), FrictionModel::Tresca);
         }
     }
 

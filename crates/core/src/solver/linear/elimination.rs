@@ -254,12 +254,13 @@ impl Postorder {
     }
 }
 
-/// An order of elimination for the contacts between grains, kept while these stay the same.
+/// An order of elimination for the contacts between grains, and of these with walls that are driven, kept while these stay
+/// the same. Walls are bodies behind the grains.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactGraph {
     /// In which order bodies are eliminated.
     pub elimination: Elimination,
-    /// The block of each row between grains, by the number that it has in [`Elimination::later`].
+    /// The block of each row between two that can move, by the number that it has in [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
     /// What `elimination` was made for.
     bodies: usize,
@@ -267,10 +268,16 @@ pub(crate) struct ContactGraph {
 }
 
 impl ContactGraph {
-    /// Orders the elimination, unless the contacts between grains are those of the last time.
+    /// Orders the elimination, unless the contacts are those of the last time.
     pub(crate) fn analyse<M: Model>(&mut self, problem: &StepProblem<M>) {
-        let pairs = || problem.rows.pairs.iter().map(|row| (row.i, row.j));
-        let bodies = problem.bodies.now.len();
+        let grains = problem.bodies.now.len();
+        let bodies = grains + problem.walls.driven.len();
+        let pairs = || {
+            let of_walls = problem.walls.driven_rows.iter().map(|known| {
+                (problem.rows.fixed[known.number as usize].i, grains as u32 + known.by.wall)
+            });
+            of_walls.chain(problem.rows.pairs.iter().map(|row| (row.i, row.j)))
+        };
         if self.bodies == bodies && pairs().eq(self.pairs.iter().copied()) {
             return;
         }

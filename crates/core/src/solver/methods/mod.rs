@@ -49,7 +49,11 @@ pub(super) fn solve_by_method<M: Model>(
         Method::Newton => newton::solve(problem, newton, vectors, settings),
         Method::Admm => admm::solve(problem, admm, settings),
         Method::InteriorPoint => interior_point::solve(problem, path, settings, |problem, rest| {
-            newton::solve(problem, newton, vectors, rest)
+            // Newton's method knows of no walls that a force drives.
+            match problem.is_driven() {
+                true => nncg::solve(&mut BodySystem::new(problem), rest, vectors),
+                false => newton::solve(problem, newton, vectors, rest),
+            }
         }),
         Method::Nncg => nncg::solve(&mut BodySystem::new(problem), settings, vectors),
         Method::Apgd => apgd::solve(&mut BodySystem::new(problem), settings, vectors),

@@ -7,7 +7,6 @@
 
 use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
 use super::sweep::ImpulseChange;
-use crate::contact::{ContactLaw, law};
 use crate::solver::kinematics::Model;
 use crate::solver::method::Ordering;
 use crate::solver::problem::{
@@ -134,7 +133,7 @@ fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     problem: &mut StepProblem<M>,
     backward: bool,
 ) -> ImpulseChange {
-    if !P::LAGS && problem.is_driven() {
+    if P::TAKES_DRIVES && problem.is_driven() {
         return pass::<M, P, MEASURE, true>(problem, backward);
     }
     #[cfg(target_arch = "x86_64")]
@@ -178,7 +177,8 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
         |number: usize, row: &mut FixedRow<M>, bodies: &mut [_], change: &mut _| {
             if DRIVEN && let Some(known) = walls.driven_row(number).copied() {
                 let wall = &mut walls.driven[known.by.wall as usize];
-                let impulse = solve_driven(&law, row, &known, &mut bodies[row.i as usize], wall);
+                let i = &mut bodies[row.i as usize];
+                let impulse = solve_driven(project(number), row, &known, i, wall);
                 ImpulseChange::add::<M, MEASURE>(change, row.effective_mass, impulse);
             } else {
                 row.solve::<MEASURE>(bodies, change, project(number));
@@ -208,7 +208,7 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
 /// Solves the contact of a grain with a driven wall, and returns the change of (λ_n, λ_t). A normal impulse moves the
 /// wall along the tangent, too, where it goes askew, so the tangential velocity is read after it.
 fn solve_driven<M: Model>(
-    law: &ContactLaw,
+    project: impl Fn([f64; 2]) -> [f64; 2],
     row: &mut FixedRow<M>,
     known: &DrivenRow,
     i: &mut M::Body<f64>,
@@ -220,7 +220,7 @@ fn solve_driven<M: Model>(
     let closing = normal_velocity + known.still[0] - along_normal * wall.now;
     let before = row.shifted_impulse;
     let compliance = 1.0 + answer * along_normal * along_normal;
-    row.shifted_impulse = law::signorini(before - closing / compliance);
+    [row.shifted_impulse, _] = project([before - closing / compliance, 0.0]);
     let normal = row.shifted_impulse - before;
     M::push_single(i, row.normal, [normal, 0.0]);
     wall.now -= answer * along_normal * normal;
@@ -231,8 +231,7 @@ fn solve_driven<M: Model>(
     let slip = tangential_velocity - known.still[1] - along_tangent * wall.now;
     let before = row.tangential_impulse;
     let compliance = M::TANGENTIAL_COMPLIANCE + answer * along_tangent * along_tangent;
-    let bound = law.friction_bound(row.shifted_impulse);
-    row.tangential_impulse = law::coulomb(before - slip / compliance, bound);
+    [_, row.tangential_impulse] = project([row.shifted_impulse, before - slip / compliance]);
     let tangential = row.tangential_impulse - before;
     M::push_single(i, row.normal, [0.0, tangential]);
     wall.now -= answer * along_tangent * tangential;

@@ -45,6 +45,8 @@ impl Default for LaggedFriction {
 pub(crate) trait FrictionProjection: Sized {
     /// True where each row has a lagged number.
     const LAGS: bool;
+    /// True where walls that a force drives are known of.
+    const TAKES_DRIVES: bool = true;
 
     /// The (σ, λ_t) that are allowed nearest to `trial`, in the metric diag(1, m_n/m_t).
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
@@ -142,6 +144,7 @@ pub(crate) enum ConeFriction {}
 
 impl FrictionProjection for ConeFriction {
     const LAGS: bool = true;
+    const TAKES_DRIVES: bool = false;
 
     #[inline(always)]
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2] {

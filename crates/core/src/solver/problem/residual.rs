@@ -114,9 +114,10 @@ pub(super) fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
 pub(super) fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
-        let opening = motion.now[0] + row.restitution_velocity;
+        let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);
+        let opening = now[0] + row.restitution_velocity;
         let [normal, tangential] = row.impulse();
-        let trial = [normal - opening, tangential - compliance * motion.now[1]];
+        let trial = [normal - opening, tangential - compliance * now[1]];
         let allowed = P::project::<M>(&problem.law, problem.friction.now[number], trial);
         sums.add::<M>(row, [normal - allowed[0], tangential - allowed[1]], &motion);
     };
@@ -349,16 +350,15 @@ impl GapSums {
             _ if on_cone => 0.0,
             _ => problem.law.friction_bound(shifted),
         };
-        let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);
-        let opening = now[0] + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
-        let across = now[1].abs();
-        let least = if on_cone { problem.law.friction * across } else { 0.0 };
+        let [normal, across] = motion.now;
+        let opening = normal + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
+        let least = if on_cone { problem.law.friction * across.abs() } else { 0.0 };
         let lacking = (least - opening).max(0.0);
         let mut of_contact = shifted * (opening + 2.0 * lacking) + lacking * lacking;
         if M::FRICTION {
-            of_contact += tangential * now[1];
+            of_contact += tangential * across;
             if !on_cone {
-                of_contact += lagged * across;
+                of_contact += lagged * across.abs();
             }
         }
         let free = motion.free[0] + row.restitution_velocity;

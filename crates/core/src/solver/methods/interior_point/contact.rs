@@ -89,8 +89,8 @@ pub(super) struct PathContact {
     pub multiplier: [f64; PAIRS],
     /// The lagged bound g, m/s.
     pub bound: f64,
-    /// What is added to v_n, m/s.
-    pub opening: f64,
+    /// What lags and is added to w, m/s.
+    pub lag: f64,
     /// (w, v) at the present impulses, m/s.
     pub velocity: [f64; 2],
     /// ε.

@@ -151,9 +151,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, contacts, .. } = &mut **workspace;
         let mut of_contacts = contacts.iter_mut();
-        problem.for_each_velocity(&problem.bodies.now, |_, [normal, tangential]| {
+        problem.for_each_velocity(&problem.bodies.now, |row, [normal, tangential]| {
             let Some(contact) = of_contacts.next() else { return };
-            contact.velocity = [normal + contact.opening, tangential];
+            contact.velocity = [normal + (row.restitution_velocity + contact.lag), tangential];
             contact.stiffen::<S>(*numbers);
         });
         let answers = contacts.iter().map(|contact| contact.stiffness::<S>(*numbers));
@@ -166,7 +166,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let PathWorkspace { graph, system, vector, contacts, targets, step, .. } = &mut **workspace;
         let elimination = &graph.elimination;
         vector.clear();
-        vector.resize(problem.bodies.now.len(), [0.0; D]);
+        vector.resize(elimination.body_at.len(), [0.0; D]);
         let loads = contacts.iter().zip(&*targets);
         let loads = loads.map(|(contact, targets)| contact.load::<S>(*numbers, targets));
         push_all(problem, elimination, loads, vector);

@@ -192,12 +192,12 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { near, contacts, momenta, graph, .. } = &mut **workspace;
         let mut of_contacts = near.iter_mut().zip(&*contacts);
-        problem.for_each_velocity(&problem.bodies.now, |_, [normal, tangential]| {
+        problem.for_each_velocity(&problem.bodies.now, |row, [normal, tangential]| {
             let Some((near, contact)) = of_contacts.next() else { return };
-            near.velocity = [normal + contact.opening, tangential];
+            near.velocity = [normal + (row.restitution_velocity + contact.lag), tangential];
         });
         momenta.clear();
-        momenta.resize(problem.bodies.now.len(), [0.0; D]);
+        momenta.resize(graph.elimination.body_at.len(), [0.0; D]);
         let impulses = near.iter().map(|contact| contact.impulse);
         push_all(problem, &graph.elimination, impulses, momenta);
     }

@@ -1,11 +1,12 @@
 //! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric but for Coulomb's law.
+//!
+//! A wall that a force drives is one more body, behind the grains: its speed V is the first of its coordinates, M + cΔt is
+//! its inertia (`problem::walls`), and its other coordinates take part in nothing.
 
 use super::contact::Shape;
 use crate::solver::kinematics::Model;
-use crate::solver::linear::{
-    Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix, inertia,
-};
-use crate::solver::problem::{Row, StepProblem};
+use crate::solver::linear::{Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix};
+use crate::solver::problem::{DrivenBy, Row, StepProblem};
 
 /// The matrix, then its factors.
 #[derive(Clone, Debug, Default)]
@@ -21,32 +22,28 @@ impl<const D: usize> StepMatrix<D> {
         &mut self,
         problem: &StepProblem<M>,
         graph: &ContactGraph,
-        mut answers: impl Iterator<Item = Block<2>>,
+        answers: impl Iterator<Item = Block<2>>,
     ) {
         let elimination = &graph.elimination;
-        let masses = &problem.bodies.masses;
         if S::LEANS {
-            self.unsymmetric.start::<M>(elimination, masses);
+            self.unsymmetric.clear(elimination);
         } else {
             self.symmetric.clear(elimination);
-            for (&place, &mass) in elimination.place_of.iter().zip(masses) {
-                self.symmetric.add_to_diagonal(place, &inertia::<M, D>(mass));
-            }
         }
-        for (row, answer) in problem.rows.fixed.iter().zip(&mut answers) {
-            let [on_i, _] = gradients::<M, D>(row);
-            let answer = heavy(row.effective_mass, answer);
-            let block = stiffness(&answer, &on_i, &on_i);
-            self.add_to_diagonal::<S>(elimination.place_of[row.i as usize], &block);
+        for (place, inertia) in (0..).zip(inertias::<M, D>(problem, elimination)) {
+            let mut block = [[0.0; D]; D];
+            (0..D).for_each(|axis| block[axis][axis] = inertia[axis]);
+            self.add_to_diagonal::<S>(place, &block);
         }
-        for ((row, &number), answer) in
-            problem.rows.pairs.iter().zip(&graph.pair_blocks).zip(answers)
-        {
-            let [on_i, on_j] = gradients::<M, D>(row);
-            let (i, j) =
-                (elimination.place_of[row.i as usize], elimination.place_of[row.j as usize]);
+        let mut blocks = graph.pair_blocks.iter();
+        for ((number, row), answer) in problem.rows().zip(answers) {
+            let (on_i, second) = bodies_of::<M, D>(problem, number, row);
             let answer = heavy(row.effective_mass, answer);
+            let i = elimination.place_of[row.i as usize];
             self.add_to_diagonal::<S>(i, &stiffness(&answer, &on_i, &on_i));
+            let Some((j, on_j)) = second else { continue };
+            let Some(&number) = blocks.next() else { break };
+            let j = elimination.place_of[j];
             self.add_to_diagonal::<S>(j, &stiffness(&answer, &on_j, &on_j));
             if S::LEANS {
                 let (i_to_j, j_to_i) = self.unsymmetric.off_diagonal_mut(number, i < j);
@@ -83,11 +80,26 @@ impl<const D: usize> StepMatrix<D> {
     }
 }
 
-/// How the velocities of i, then of j, enter v_n and v_t of a row.
+/// How a body's velocity enters v_n and v_t of a row.
+type Gradients<const D: usize> = [[f64; D]; 2];
+
+/// The gradients of i; the number of the other body, grain or driven wall, if that can move, and its gradients.
 #[inline(always)]
-pub(super) fn gradients<M: Model, const D: usize>(row: &Row<M>) -> [[[f64; D]; 2]; 2] {
+fn bodies_of<M: Model, const D: usize>(
+    problem: &StepProblem<M>,
+    number: usize,
+    row: &Row<M>,
+) -> (Gradients<D>, Option<(usize, Gradients<D>)>) {
     let part = |vector: [f64; 3]| std::array::from_fn(|axis| vector[axis]);
-    M::gradients(row.normal).map(|of_body| of_body.map(part))
+    let [on_i, on_j] = M::gradients(row.normal).map(|of_body| of_body.map(part));
+    if problem.rows.is_pair(number) {
+        return (on_i, Some((row.j as usize, on_j)));
+    }
+    let of_wall = |DrivenBy { wall, along }| {
+        let on_wall = along.map(|along: f64| part([-along, 0.0, 0.0]));
+        (problem.bodies.now.len() + wall as usize, on_wall)
+    };
+    (on_i, problem.walls.driven_row(number).map(|known| of_wall(known.by)))
 }
 
 /// Adds Hᵀ m p to `momenta` (by place), of (σ, λ) in m/s by row; kg m/s.
@@ -98,14 +110,12 @@ pub(super) fn push_all<M: Model, const D: usize>(
     impulses: impl Iterator<Item = [f64; 2]>,
     momenta: &mut [[f64; D]],
 ) {
-    let fixed_count = problem.rows.fixed.len();
     for ((number, row), impulse) in problem.rows().zip(impulses) {
         let impulse = impulse.map(|part| row.effective_mass * part);
-        let [on_i, on_j] = gradients::<M, D>(row);
+        let (on_i, second) = bodies_of::<M, D>(problem, number, row);
         add_push(&mut momenta[elimination.place_of[row.i as usize] as usize], &on_i, impulse);
-        if number >= fixed_count {
-            let place = elimination.place_of[row.j as usize] as usize;
-            add_push(&mut momenta[place], &on_j, impulse);
+        if let Some((j, on_j)) = second {
+            add_push(&mut momenta[elimination.place_of[j] as usize], &on_j, impulse);
         }
     }
 }
@@ -118,13 +128,11 @@ pub(super) fn for_each_change<M: Model, const D: usize>(
     changes: &[[f64; D]],
     mut visit: impl FnMut(usize, [f64; 2]),
 ) {
-    let fixed_count = problem.rows.fixed.len();
     for (number, row) in problem.rows() {
-        let [on_i, on_j] = gradients::<M, D>(row);
+        let (on_i, second) = bodies_of::<M, D>(problem, number, row);
         let mut change = relative(&changes[elimination.place_of[row.i as usize] as usize], &on_i);
-        if number >= fixed_count {
-            let place = elimination.place_of[row.j as usize] as usize;
-            let of_j = relative(&changes[place], &on_j);
+        if let Some((j, on_j)) = second {
+            let of_j = relative(&changes[elimination.place_of[j] as usize], &on_j);
             change = [change[0] + of_j[0], change[1] + of_j[1]];
         }
         visit(number, change);
@@ -132,14 +140,14 @@ pub(super) fn for_each_change<M: Model, const D: usize>(
 }
 
 #[inline(always)]
-fn add_push<const D: usize>(to: &mut [f64; D], on: &[[f64; D]; 2], impulse: [f64; 2]) {
+fn add_push<const D: usize>(to: &mut [f64; D], on: &Gradients<D>, impulse: [f64; 2]) {
     for axis in 0..D {
         to[axis] += on[0][axis] * impulse[0] + on[1][axis] * impulse[1];
     }
 }
 
 #[inline(always)]
-fn relative<const D: usize>(velocity: &[f64; D], on: &[[f64; D]; 2]) -> [f64; 2] {
+fn relative<const D: usize>(velocity: &[f64; D], on: &Gradients<D>) -> [f64; 2] {
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }
 
@@ -148,8 +156,14 @@ pub(super) fn inertias<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     elimination: &Elimination,
 ) -> impl Iterator<Item = [f64; D]> {
-    let masses = elimination.body_at.iter().map(|&body| problem.bodies.masses[body as usize]);
-    masses.map(|mass| std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis]))
+    let StepProblem { bodies, walls, .. } = problem;
+    elimination.body_at.iter().map(|&body| match bodies.masses.get(body as usize) {
+        Some(mass) => std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis]),
+        None => {
+            let wall = &walls.driven[body as usize - bodies.masses.len()];
+            std::array::from_fn(|axis| if axis == 0 { 1.0 / wall.response } else { 1.0 })
+        }
+    })
 }
 
 /// m S⁻¹, kg.
@@ -162,8 +176,8 @@ fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
 #[inline(always)]
 fn stiffness<const D: usize>(
     [[nn, nt], [tn, tt]]: &Block<2>,
-    one: &[[f64; D]; 2],
-    other: &[[f64; D]; 2],
+    one: &Gradients<D>,
+    other: &Gradients<D>,
 ) -> Block<D> {
     let mut block = [[0.0; D]; D];
     for column in 0..D {
