@@ -5,22 +5,19 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValuesParser;
 
 use crate::VERSION;
-use crate::config::{Config, joined, parser_of};
+use crate::config::{Config, joined};
 use crate::error::{Error, Result};
 use crate::headless::draw_snapshots;
 use crate::output::{
     Progress, check_file, check_writable, note_line, print_line, print_text, write_file,
 };
-use crate::sim::Stepper;
-use crate::solver::Method;
 use crate::study::chart::{png, svg};
 use crate::study::stability::{
     CHALLENGES, Challenge, StabilityTable, count_of_maps, maps, picture,
 };
 use crate::study::{
-    BudgetOptions, ChartOptions, ChartPart, RunsTable, Shard, Study, SweepOptions, ValidateOptions,
-    budget, chart_speed, experiment_names, figure_names, merge, reproduce, sweep, validate,
-    write_means,
+    BudgetOptions, ChartOptions, RunsTable, Shard, Study, SweepOptions, ValidateOptions, budget,
+    chart_speed, figure_names, merge, reproduce, sweep, validate, write_means,
 };
 use crate::threads::make_threads;
 
@@ -101,20 +98,7 @@ pub(super) enum StudyCommand {
         quick: bool,
     },
     /// Chart speed against accuracy of every method: of steps and of simulations
-    Chart {
-        /// Folder for pictures, tables and measurements; the same command goes on where it stopped
-        #[arg(long, value_name = "DIR")]
-        out: PathBuf,
-        /// Coarser, in a few minutes
-        #[arg(long)]
-        quick: bool,
-        /// Also race on steps of 500, 2,000 and 10,000 grains
-        #[arg(long)]
-        large: bool,
-        /// Chart these alone
-        #[arg(long, value_name = "PART", value_delimiter = ',')]
-        only: Vec<ChartPart>,
-    },
+    Chart(ChartOptions),
     /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
     Stability {
         /// Challenges; all where none is given
@@ -131,37 +115,7 @@ pub(super) enum StudyCommand {
         quick: bool,
     },
     /// Hold Slump against published experiments: quantity, interval, verdict and cost, for a choice of methods
-    Validate {
-        /// Experiments; all where none is given
-        #[arg(value_name = "EXPERIMENT", value_parser = PossibleValuesParser::new(experiment_names()))]
-        experiments: Vec<String>,
-        /// Folder for report, tables and figure; the same command goes on where it stopped
-        #[arg(long, value_name = "DIR")]
-        out: PathBuf,
-        /// Smaller systems and fewer of them, in a few minutes
-        #[arg(long)]
-        quick: bool,
-        /// The way to step, under which all is computed; but for moreau, experiments about methods are left out
-        #[arg(long, value_name = "NAME", default_value = "moreau", value_parser = parser_of::<Stepper>())]
-        stepper: Stepper,
-        /// Methods, each with every time step and effort [default: nsgs]
-        #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
-        methods: Vec<Method>,
-        /// Time steps, seconds [default: 1e-3, and 3e-4 unless quick]
-        #[arg(
-            long = "time-steps",
-            value_name = "SECONDS",
-            value_delimiter = ',',
-            allow_negative_numbers = true
-        )]
-        time_steps_secs: Vec<f64>,
-        /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either; auto certifies each step]
-        #[arg(long, value_name = "N", value_delimiter = ',')]
-        sweeps: Vec<u32>,
-        /// Efforts: residuals that a step is solved to, within 1,000 sweeps
-        #[arg(long, value_name = "X", value_delimiter = ',', allow_negative_numbers = true)]
-        tolerances: Vec<f64>,
-    },
+    Validate(ValidateOptions),
 }
 
 #[derive(clap::Subcommand)]
@@ -245,34 +199,11 @@ impl StudyCommand {
             Self::Reproduce { figures, out, quick } => {
                 reproduce(&figures, &out, quick, VERSION, draw_snapshots)
             }
-            Self::Chart { out, quick, large, only } => {
-                chart_speed(&ChartOptions { out, quick, large, only }, VERSION)
-            }
+            Self::Chart(options) => chart_speed(&options, VERSION),
             Self::Stability { scenes, out, table, quick } => {
                 stability(&scenes, out.as_deref(), table.as_deref(), quick)
             }
-            Self::Validate {
-                experiments,
-                out,
-                quick,
-                stepper,
-                methods,
-                time_steps_secs,
-                sweeps,
-                tolerances,
-            } => {
-                let options = ValidateOptions {
-                    experiments,
-                    out,
-                    quick,
-                    stepper,
-                    methods,
-                    time_steps_secs,
-                    sweeps,
-                    tolerances,
-                };
-                validate(&options, VERSION)
-            }
+            Self::Validate(options) => validate(&options, VERSION),
         }
     }
 }

@@ -44,4 +44,4 @@ pub use speed::{ChartOptions, ChartPart, chart_speed};
 pub use states::settled_pile;
 pub use statistics::{Mean, mean};
 pub use sweep::{Shard, SweepOptions, merge, sweep};
-pub use validate::{ValidateOptions, experiment_names, validate};
+pub use validate::{ValidateOptions, validate};

@@ -37,15 +37,19 @@ pub enum ChartPart {
 }
 
 /// What to chart, and how.
-#[derive(Clone, Debug)]
+#[derive(clap::Args, Clone, Debug)]
 pub struct ChartOptions {
-    /// Folder for pictures, tables and measurements.
+    /// Folder for pictures, tables and measurements; the same command goes on where it stopped
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Coarser, in a few minutes.
+    /// Coarser, in a few minutes
+    #[arg(long)]
     pub quick: bool,
-    /// Also steps of up to 10,000 grains.
+    /// Also race on steps of 500, 2,000 and 10,000 grains
+    #[arg(long)]
     pub large: bool,
-    /// The parts; all where there is none.
+    /// Chart these alone
+    #[arg(long, value_name = "PART", value_delimiter = ',')]
     pub only: Vec<ChartPart>,
 }
 

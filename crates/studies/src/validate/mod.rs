@@ -30,10 +30,13 @@ mod watched;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use clap::builder::PossibleValuesParser;
+
 use self::experiment::{Experiment, ExperimentCases};
 use self::runs::run_all;
 use self::variants::step_variants;
 use super::machine::Machine;
+use crate::config::parser_of;
 use crate::error::Result;
 use crate::output::{check_writable, print_line, print_text, write_file};
 use crate::report::write_sheet;
@@ -55,28 +58,40 @@ static EXPERIMENTS: [Experiment; 10] = [
 ];
 
 /// What to hold against what was published, and how.
-#[derive(Clone, Debug)]
+#[derive(clap::Args, Clone, Debug)]
 pub struct ValidateOptions {
-    /// Experiments by name; all where there is none.
+    /// Experiments; all where none is given
+    #[arg(value_name = "EXPERIMENT", value_parser = PossibleValuesParser::new(experiment_names()))]
     pub experiments: Vec<String>,
-    /// Folder for report, tables and figure.
+    /// Folder for report, tables and figure; the same command goes on where it stopped
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Smaller systems and fewer of them, in a few minutes.
+    /// Smaller systems and fewer of them, in a few minutes
+    #[arg(long)]
     pub quick: bool,
-    /// The way to step. Experiments that are about methods of their own are left out but under `moreau`.
+    /// The way to step, under which all is computed; but for moreau, experiments about methods are left out
+    #[arg(long, value_name = "NAME", default_value = "moreau", value_parser = parser_of::<Stepper>())]
     pub stepper: Stepper,
-    /// Methods; an empty list is left to the program, as in the next ones.
+    /// Methods, each with every time step and effort [default: nsgs]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
     pub methods: Vec<Method>,
-    /// Δt, s.
+    /// Time steps, seconds [default: 1e-3, and 3e-4 unless quick]
+    #[arg(
+        long = "time-steps",
+        value_name = "SECONDS",
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
     pub time_steps_secs: Vec<f64>,
-    /// Sweeps of each step.
+    /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either; auto certifies each step]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
     pub sweeps: Vec<u32>,
-    /// Residuals that each step is solved to.
+    /// Efforts: residuals that a step is solved to, within 1,000 sweeps
+    #[arg(long, value_name = "X", value_delimiter = ',', allow_negative_numbers = true)]
     pub tolerances: Vec<f64>,
 }
 
-/// The names of all experiments.
-pub fn experiment_names() -> Vec<&'static str> {
+fn experiment_names() -> Vec<&'static str> {
     EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
 }
 
