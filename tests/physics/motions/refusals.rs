@@ -127,6 +127,11 @@ fn ways_to_step_that_know_of_no_driven_wall_are_refused() {
         assert_eq!(run.change(scene.settings()).expect_err("nor while it runs").to_string(), said);
     }
     assert!(taken >= 5);
+    for model in [FrictionModel::Associated, FrictionModel::Desaxce] {
+        let allowed = "must be coulomb or tresca where a motion has a drive";
+        let expected = format!("friction-model is {model}, but {allowed}");
+        refuses(&pressed(1.0), &[(&expected, &|scene| scene.solver.friction_model = model)]);
+    }
     let refused = Stepper::ALL.iter().filter(|stepper| !stepper.info().takes_drives);
     assert!(refused.eq(&[Stepper::Avbd]));
 }

@@ -11,13 +11,18 @@ use crate::solver::kinematics::Model;
 /// A block of D × D numbers.
 pub(crate) type Block<const D: usize> = [[f64; D]; D];
 
-/// The inertias of a body of that mass, kg.
-pub(crate) fn inertia<M: Model, const D: usize>(mass: f64) -> Block<D> {
+/// A block with these numbers on its diagonal.
+pub(crate) fn diagonal<const D: usize>(numbers: [f64; D]) -> Block<D> {
     let mut block = [[0.0; D]; D];
     for (axis, row) in block.iter_mut().enumerate() {
-        row[axis] = mass * M::INERTIA_OVER_MASS[axis];
+        row[axis] = numbers[axis];
     }
     block
+}
+
+/// The inertias of a body of that mass, kg.
+pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
+    std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis])
 }
 
 /// A matrix, then its factors. Memory is kept between matrices.
@@ -49,7 +54,7 @@ impl<const D: usize> BlockMatrix<D> {
     pub(crate) fn start<M: Model>(&mut self, elimination: &Elimination, masses: &[f64]) {
         self.clear(elimination);
         for (&place, &mass) in elimination.place_of.iter().zip(masses) {
-            self.diagonal[place as usize] = inertia::<M, D>(mass);
+            self.diagonal[place as usize] = diagonal(inertias::<M, D>(mass));
         }
     }
 

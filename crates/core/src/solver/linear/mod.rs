@@ -5,7 +5,7 @@ mod block_lu;
 mod elimination;
 
 pub(super) use self::block_cholesky::SymmetricBlockMatrix;
-pub(super) use self::block_lu::{Block, BlockMatrix};
+pub(super) use self::block_lu::{Block, BlockMatrix, diagonal, inertias};
 pub(super) use self::elimination::{ContactGraph, Elimination};
 
 #[cfg(test)]

@@ -15,6 +15,9 @@
 //! solved. In what still moves much a sweep it may be more. Over the mass of the grains that touch something the sum
 //! bounds the mean square of the velocities' error.
 //!
+//! A wall that a force drives is one more body, whose mass counts in ‖V − V*‖²_M and not in the mean: w and v are relative to
+//! it as it goes now, whatever of them is its own to undo (`problem::walls`).
+//!
 //! Coulomb's law has no dual. There g is the bound μσ that the impulses have themselves: V* is then the solution under
 //! these bounds, and the gap is 0 where Coulomb's law is solved and nowhere else.
 

@@ -20,7 +20,7 @@
 //! rounding would eat what a small ε magnifies.
 
 use super::contact::{ContactNumbers, Shape};
-use super::system::{for_each_change, inertias, push_all};
+use super::system::{all_inertias, for_each_change, push_all};
 use super::{InteriorPoint, PathWorkspace};
 use crate::contact::law;
 use crate::solver::kinematics::Model;
@@ -229,7 +229,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
             .map(|contact| contact.allowed::<S>(numbers, contact.trial(numbers, compliance, 0.0)));
         push_all(problem, elimination, impulses, vector);
         let mut squared = 0.0;
-        for (inertia, momenta) in inertias::<M, D>(problem, elimination).zip(&*vector) {
+        for (inertia, momenta) in all_inertias::<M, D>(problem, elimination).zip(&*vector) {
             for (momentum, inertia) in momenta.iter().zip(inertia) {
                 squared += momentum * momentum / inertia;
             }
@@ -254,7 +254,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let share = self.least_on_line(compliance);
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
-        let all = inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
+        let all = all_inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
         for ((inertia, momenta), change) in all {
             for axis in 0..D {
                 momenta[axis] += share * inertia[axis] * change[axis];
@@ -272,7 +272,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;
         let (mut of_masses, mut at_start) = (0.0, 0.0);
-        let all = inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
+        let all = all_inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
         for ((inertia, momenta), change) in all {
             for axis in 0..D {
                 of_masses += inertia[axis] * change[axis] * change[axis];

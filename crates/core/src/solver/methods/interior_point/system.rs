@@ -5,7 +5,9 @@
 
 use super::contact::Shape;
 use crate::solver::kinematics::Model;
-use crate::solver::linear::{Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix};
+use crate::solver::linear::{
+    Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix, diagonal, inertias,
+};
 use crate::solver::problem::{DrivenBy, Row, StepProblem};
 
 /// The matrix, then its factors.
@@ -30,10 +32,8 @@ impl<const D: usize> StepMatrix<D> {
         } else {
             self.symmetric.clear(elimination);
         }
-        for (place, inertia) in (0..).zip(inertias::<M, D>(problem, elimination)) {
-            let mut block = [[0.0; D]; D];
-            (0..D).for_each(|axis| block[axis][axis] = inertia[axis]);
-            self.add_to_diagonal::<S>(place, &block);
+        for (place, inertias) in (0..).zip(all_inertias::<M, D>(problem, elimination)) {
+            self.add_to_diagonal::<S>(place, &diagonal(inertias));
         }
         let mut blocks = graph.pair_blocks.iter();
         for ((number, row), answer) in problem.rows().zip(answers) {
@@ -151,14 +151,14 @@ fn relative<const D: usize>(velocity: &[f64; D], on: &Gradients<D>) -> [f64; 2] 
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }
 
-/// By place: the inertias of the bodies, kg.
-pub(super) fn inertias<M: Model, const D: usize>(
+/// By place: the inertias of grains and driven walls, kg.
+pub(super) fn all_inertias<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     elimination: &Elimination,
 ) -> impl Iterator<Item = [f64; D]> {
     let StepProblem { bodies, walls, .. } = problem;
     elimination.body_at.iter().map(|&body| match bodies.masses.get(body as usize) {
-        Some(mass) => std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis]),
+        Some(&mass) => inertias::<M, D>(mass),
         None => {
             let wall = &walls.driven[body as usize - bodies.masses.len()];
             std::array::from_fn(|axis| if axis == 0 { 1.0 / wall.response } else { 1.0 })
