@@ -63,7 +63,7 @@ pub(super) const COULOMB: Budget = Budget {
 /// What everything begins with.
 pub(super) const CERTIFIED: Budget = Budget {
     name: "Certified",
-    hint: "Each step is solved within bounds of friction that a first solve gives (tresca), and velocities are \
+    hint: "Each step is solved within bounds of friction that sweeps give (tresca), and velocities are \
            certain to 1e-4 of the root of g d. Slumps are those of Coulomb's law where that is solved.",
     settings: SolverSettings::DEFAULT,
 };

@@ -46,8 +46,6 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
     for pile in piles(30, 2.0, 0.3, 1e-3) {
         let what = what(&pile);
         let mut simulation = after(&pile, 2);
-        let (contacts, impulses) =
-            (simulation.contacts().contacts().to_vec(), simulation.contacts().impulses().to_vec());
         let before = simulation.grains().clone();
         let row = *simulation.step().expect("a finite state");
         assert!(row.converged, "{what}: {:?} after {} sweeps", row.model_residual, row.sweeps);
@@ -55,7 +53,7 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
         let mut slid = 0;
         let judged = judge(&simulation, &before);
         let now = simulation.contacts();
-        for ((contact, found), impulse) in judged.iter().zip(now.contacts()).zip(now.impulses()) {
+        for (contact, impulse) in judged.iter().zip(now.impulses()) {
             let p = impulse.normal + contact.cohesion_impulse;
             let rebound = pile.parameters.restitution * contact.before[0];
             let (mut w, v) = (contact.after[0] + rebound, contact.after[1]);
@@ -63,19 +61,10 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
             let small = |value: f64| value.abs() <= 1e-7 * scale;
             let mass = contact.normal_mass;
             if pile.solver.friction_model == FrictionModel::Tresca {
-                let then = contacts
-                    .iter()
-                    .position(|old| (old.grain, old.other) == (found.grain, found.other));
-                let Some(then) = then else { continue };
-                let rubbing = match pile.parameters.cone {
-                    FrictionCone::Shifted => impulses[then].normal + contact.cohesion_impulse,
-                    FrictionCone::Compressive => impulses[then].normal,
-                };
-                let bound = MU_OF_PILES * rubbing.max(0.0);
                 assert!(small((-p).max(0.0)) && small(mass * (-w).max(0.0)), "{what}");
                 assert!(small(p.min(mass * w)), "{what}: p {p:e}, w {w:e}");
-                let stuck = impulse.tangential - contact.tangential_mass * v;
-                assert!(small(impulse.tangential - stuck.clamp(-bound, bound)), "{what}");
+                // The bound itself is the solve's own: `scene::certificates` checks it.
+                assert!(small((impulse.tangential * v).max(0.0) / 0.05), "{what}: pushed on");
                 slid += usize::from(mass * v.abs() > 1e-3 * scale);
             } else {
                 if pile.solver.friction_model == FrictionModel::Desaxce {
@@ -122,8 +111,10 @@ impl ProblemVisitor for FromRandomStarts<'_> {
 }
 
 #[test]
-fn the_velocities_of_a_convex_model_are_the_same_from_any_start() {
-    for pile in piles(25, 20.0, 0.05, 1e-5) {
+fn the_velocities_of_a_cone_model_are_the_same_from_any_start() {
+    // Bounds of `tresca` are of sweeps that go on from the start.
+    let of_cones = |pile: &Scene| pile.solver.friction_model != FrictionModel::Tresca;
+    for pile in piles(25, 20.0, 0.05, 1e-5).into_iter().filter(of_cones) {
         let what = what(&pile);
         let run = after(&pile, 3);
         let settings = pile.solver;
@@ -188,7 +179,7 @@ fn error_of_world(run: &Simulation, pile: &Scene, bounds: &[f64], before: &Simul
         let rebound = pile.parameters.restitution * contact.before[0];
         let (mut w, v) = (contact.after[0] + rebound, contact.after[1]);
         let least = match pile.solver.friction_model {
-            FrictionModel::Tresca | FrictionModel::Coulomb => 0.0,
+            FrictionModel::Coulomb => 0.0,
             FrictionModel::Desaxce => {
                 w += friction * contact.before[1].abs();
                 friction * v.abs()
@@ -212,7 +203,7 @@ fn error_of_world(run: &Simulation, pile: &Scene, bounds: &[f64], before: &Simul
 
 #[test]
 fn the_bound_on_the_velocities_is_what_world_data_make_it() {
-    for model in CONVEX.into_iter().chain([FrictionModel::Coulomb]) {
+    for model in [FrictionModel::Associated, FrictionModel::Desaxce, FrictionModel::Coulomb] {
         let mut pile = pressed_pile(30, 0.3, 11, parameters(2.0, 1e-6, 0.3, 0.5));
         // Far from solved, so that the gap is far above rounding.
         pile.solver = SolverSettings { max_sweeps: 2, ..by_interior_point(model, 1e-8) };
@@ -224,14 +215,7 @@ fn the_bound_on_the_velocities_is_what_world_data_make_it() {
             run.contacts().contacts().iter().map(|c| (c.grain, c.other)).collect()
         };
         assert_eq!(pairs(&before), pairs(&run), "bounds are those of the same contacts");
-        let bound = |(index, impulse): (usize, &Impulse)| {
-            let cohesion = judge(&run, before.grains())[index].cohesion_impulse;
-            0.5 * (impulse.normal + cohesion).max(0.0)
-        };
         let bounds: Vec<f64> = match model {
-            FrictionModel::Tresca => {
-                before.contacts().impulses().iter().enumerate().map(bound).collect()
-            }
             // Those that the impulses have themselves.
             FrictionModel::Coulomb => {
                 let judged = judge(&run, before.grains());

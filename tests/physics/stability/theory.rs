@@ -279,7 +279,7 @@ fn along_the_floor(run: &Simulation) -> (f64, f64, bool) {
 }
 
 #[test]
-fn a_blow_on_what_slides_takes_speed_by_impulse_balance_and_tresca_is_a_step_late() {
+fn a_blow_on_what_slides_takes_speed_by_impulse_balance() {
     let scene = blow();
     let [light, heavy] = [0, 1].map(|k| scene.grains[k].radius.powi(2));
     let fall = -scene.grains[1].velocity.y;
@@ -287,16 +287,16 @@ fn a_blow_on_what_slides_takes_speed_by_impulse_balance_and_tresca_is_a_step_lat
     let before = scene.grains[0].velocity.x;
     assert!(taken > 0.1 * before && taken < 0.9 * before, "it is seen, and they go on sliding");
     let ways = [
-        (Method::Newton, FrictionModel::Coulomb, 1, 0.0),
-        (Method::InteriorPoint, FrictionModel::Tresca, 1, 1.0),
-        (Method::Nsgs, FrictionModel::Tresca, 1, 1.0),
-        (Method::InteriorPoint, FrictionModel::Tresca, 2, 0.0),
+        (Method::Newton, FrictionModel::Coulomb, 1e-8),
+        // So near do fifty sweeps come to what presses; of the step before they would know nothing.
+        (Method::InteriorPoint, FrictionModel::Tresca, 0.01 * taken),
+        (Method::Nsgs, FrictionModel::Tresca, 0.01 * taken),
     ];
-    for (time_step_secs, (method, model, solves, steps_late)) in pairs([1e-4, 1e-3, 5e-3], ways) {
-        let what = format!("{method}, {model}, {solves} solves, {time_step_secs} s");
+    for (time_step_secs, (method, model, off)) in pairs([1e-4, 1e-3, 5e-3], ways) {
+        let what = format!("{method}, {model}, {time_step_secs} s");
         let mut scene = scene.clone();
         scene.parameters.time_step_secs = time_step_secs;
-        scene.solver = settings(method, model, solves);
+        scene.solver = settings(method, model, 1);
         let mut run = start(&scene);
         let mut steps = 0.0;
         let start = along_the_floor(&run).1;
@@ -307,13 +307,13 @@ fn a_blow_on_what_slides_takes_speed_by_impulse_balance_and_tresca_is_a_step_lat
         }
         assert!(steps > 1.0, "{what}: the floor's contact was there before the blow");
         let at_the_blow = along_the_floor(&run).0;
-        let expected = before - (1.0 - steps_late) * taken;
-        assert!((at_the_blow - expected).abs() < 1e-8, "{what}: {at_the_blow} for {expected}");
+        let expected = before - taken;
+        assert!((at_the_blow - expected).abs() < off, "{what}: {at_the_blow} for {expected}");
         take_steps(&mut run, 10);
         let (after, place, _) = along_the_floor(&run);
-        assert!((after - (before - taken)).abs() < 1e-8, "{what}: {after}");
-        let late = time_step_secs * taken * steps_late;
-        let way = time_step_secs * ((steps + 10.0) * before - 11.0 * taken) + late;
-        assert!((place - start - way).abs() < 1e-9, "{what}: {} for {way}", place - start);
+        assert!((after - (before - taken)).abs() < off, "{what}: {after}");
+        let way = time_step_secs * ((steps + 10.0) * before - 11.0 * taken);
+        let off = (11.0 * time_step_secs * off).max(1e-9);
+        assert!((place - start - way).abs() < off, "{what}: {} for {way}", place - start);
     }
 }

@@ -165,16 +165,6 @@ impl ContactList {
         all
     }
 
-    /// P_n of a contact's last solve, N·s; nothing until its first, nor while its pair just comes near. Contacts that a
-    /// run begins with were found before its first step, and a pair that touches is found once, however often its step
-    /// is cut.
-    pub(crate) fn last_solved(&self, index: usize) -> Option<f64> {
-        let is_young = self.step <= 1 || self.now.found_in[index] == self.step;
-        let impulse = self.now.impulses[index];
-        let is_unsolved = is_young && impulse == Impulse::default() || !self.is_in_touch(index);
-        (!is_unsolved).then_some(impulse.normal)
-    }
-
     /// The contacts, sorted by (i, other).
     pub fn contacts(&self) -> &[Contact] {
         &self.now.contacts

@@ -7,7 +7,8 @@ use crate::contact::ContactList;
 use crate::scene::{SCENES, stability};
 use crate::sim::{ProblemVisitor, Settings, Simulation, Stepper};
 use crate::solver::{
-    Memory, Method, Model, SolverSettings, StepProblem, residual, solve, velocity_error,
+    Memory, Method, Model, SolverSettings, StepProblem, residual, solve, solve_within_bounds,
+    velocity_error,
 };
 
 /// Larger scenes say no more, and take longer.
@@ -16,7 +17,7 @@ const MOST_GRAINS: usize = 250;
 /// After which walls that a force drives have reached the grains.
 const STEPS_TO_TOUCH: u64 = 120;
 
-/// A problem that is solved within the bounds of friction that its step begins with.
+/// A problem that is solved within bounds of friction.
 struct Certified(SolverSettings);
 
 /// Of one, m/s: the bound that is told, the same from the rows' data, and, where it is certified, the distance from the
@@ -31,20 +32,17 @@ impl ProblemVisitor for Certified {
     type Output = Certificate;
 
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Certificate {
-        let once = |solver| SolverSettings { model_solves: 1, ..solver };
+        let report = solve(problem, &mut Memory::default(), &self.0);
         // As near to the solution as rounding allows; how near is taken off the distance.
-        let start = problem.clone();
         let exact = [1e-9, 1e-7, 1e-6].into_iter().find_map(|tolerance| {
-            let mut exact = start.clone();
-            let tight = once(SolverSettings { tolerance, ..SolverSettings::default() });
-            solve(&mut exact, &mut Memory::default(), &tight).converged.then_some(exact)
+            let mut exact = problem.clone();
+            let tight = SolverSettings { tolerance, ..SolverSettings::default() };
+            solve_within_bounds(&mut exact, &tight).converged.then_some(exact)
         });
-        let report = solve(problem, &mut Memory::default(), &once(self.0));
         let (gap, mass) = gap(problem);
         let told = velocity_error(problem).bound;
         let found = if gap > 0.0 { (gap / mass).sqrt() } else { 0.0 };
         let distance = exact.filter(|_| report.converged && mass > 0.0).map(|exact| {
-            assert_eq!(problem.friction.now, exact.friction.now, "the bounds are the same");
             let squared = squared_distance(problem, &exact) / mass;
             squared.sqrt() - velocity_error(&exact).bound
         });

@@ -24,6 +24,8 @@ pub use kinematics::{
 };
 pub use method::{METHODS, Method, MethodInfo, MethodOrder, Ordering};
 pub(crate) use methods::picked;
+#[cfg(test)]
+pub(crate) use methods::solve_within_bounds;
 #[doc(hidden)]
 pub use methods::sweep;
 pub use methods::{BodySystem, ContactSystem, Memory, ScaledVector, SolveReport};

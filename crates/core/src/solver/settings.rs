@@ -28,7 +28,8 @@ words! {
         Coulomb = "coulomb",
             "Coulomb's law itself (M. Jean, 1999); not convex, so a large step may not be solved in any time";
         Tresca = "tresca",
-            "bounds μN of each contact's last solve (P. D. Panagiotopoulos, 1975); friction lags a step behind";
+            "bounds μN that fifty sweeps under Coulomb's law lead to (P. D. Panagiotopoulos, 1975); friction is a little behind \
+             on large piles";
         Associated = "associated",
             "cone complementarity (M. Anitescu, 2006); what slides opens by Δt·μ·v_t a step, and bonds break";
         Desaxce = "desaxce",
@@ -116,7 +117,7 @@ settings! {
             ),
         }
         #[serde(default = "one")]
-        model_solves: u32 = 2, "model-solves",
+        model_solves: u32 = 1, "model-solves",
             "How often each step is solved under tresca or desaxce, what they hold taken anew each \
              time: 1 is the cheapest, more come nearer to Coulomb's law", {
             allowed: "between 1 and 1000",

@@ -155,8 +155,8 @@ enum VariantChange {
     Method(Method),
     /// Gauss–Seidel in an order of its own.
     Order(Ordering),
-    /// A model of friction, solved so many times a step by the method that solves it for certain.
-    Model(FrictionModel, u32),
+    /// A model of friction, by the method that solves it for certain.
+    Model(FrictionModel),
     /// A stepper that solves no problem by a method.
     Stepper(Stepper),
     Preset(Preset),
@@ -175,11 +175,10 @@ impl TriedVariant {
             VariantChange::Order(ordering) => {
                 (solver.method, solver.ordering) = (Method::Nsgs, ordering);
             }
-            VariantChange::Model(friction_model, model_solves) => {
+            VariantChange::Model(friction_model) => {
                 solver.method = Method::InteriorPoint;
                 if scene.physics.friction {
                     solver.friction_model = friction_model;
-                    solver.model_solves = model_solves;
                 }
             }
             VariantChange::Stepper(stepper) => scene.stepper = stepper,
@@ -208,20 +207,17 @@ fn sweep_instead(solver: &mut SolverSettings) {
     }
 }
 
-/// All variants: the default, every method, every stepper without one, every model of friction beside Coulomb's law, and
-/// settings that mend a known failure.
+/// All variants: the default, every method, every stepper without one, every model of friction that neither it nor these
+/// have, and settings that mend a known failure.
 static VARIANTS: LazyLock<Vec<TriedVariant>> = LazyLock::new(|| {
     use VariantChange::{Default, Method, Model, Order, Preset as Together, Stepper as Step};
     let methods = METHODS.iter().map(|info| (info.name, Method(info.method)));
     let steppers = Stepper::ALL.iter().filter(|stepper| !stepper.uses_method());
     let steppers = steppers.map(|&stepper| (stepper.name(), Step(stepper)));
-    let models = FrictionModel::SOLVED.iter().filter(|model| **model != FrictionModel::Coulomb);
-    let models = models.map(|&model| (model.name(), Model(model, 1)));
-    let others = [
-        ("tresca twice", Model(FrictionModel::Tresca, 2)),
-        ("nsgs bottom-up", Order(Ordering::BottomUp)),
-        ("robust", Together(Preset::Robust)),
-    ];
+    let models = [FrictionModel::Associated, FrictionModel::Desaxce];
+    let models = models.map(|model| (model.name(), Model(model)));
+    let others =
+        [("nsgs bottom-up", Order(Ordering::BottomUp)), ("robust", Together(Preset::Robust))];
     let default = [("default", Default)].into_iter();
     let all = default.chain(methods).chain(steppers).chain(models).chain(others);
     all.map(|(name, change)| TriedVariant { name, change }).collect()

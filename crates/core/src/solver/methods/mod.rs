@@ -18,6 +18,8 @@ mod sweep;
 pub(crate) use self::auto::picked;
 pub(crate) use self::contact_system::WorkVectors;
 pub use self::contact_system::{BodySystem, ContactSystem, ScaledVector};
+#[cfg(test)]
+pub(crate) use self::interior_point::solve_within_bounds;
 pub use self::nsgs::sweep;
 pub use self::stopping::SolveReport;
 pub(super) use self::stopping::sweep_until_settled;

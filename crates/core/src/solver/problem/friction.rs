@@ -3,8 +3,8 @@
 //! With w = v_n + ρ v_n^{n−1} and v = v_t of a contact, in reduced impulses (`contact::law`):
 //!
 //! * `tresca`: 0 ≤ σ ⟂ w ≥ 0 and λ_t = clamp(λ_t − v m_t/m_n, ±g). The lagged number is g, Coulomb's bound at
-//!   the σ of the contact's last solve. A contact that has not been solved yet has no such σ, and gets Coulomb's
-//!   bound within its first solve (P. D. Panagiotopoulos, 1975, solved Coulomb's law by such problems).
+//!   the σ of what came before: at first of some sweeps under Coulomb's law, then of the last solve
+//!   (P. D. Panagiotopoulos, 1975, solved Coulomb's law by such problems).
 //! * `associated`: K ∋ (σ, λ_t) ⟂ (w, v) ∈ K* with K = {|λ_t| ≤ μσ} (M. Anitescu, 2006; A. Tasora and
 //!   M. Anitescu, 2011). Where it slides, w = μ|v|: a contact opens that ought to stay closed.
 //! * `desaxce`: the same with w + s in the place of w. With s = μ|v| of the solution that would be Coulomb's
@@ -21,23 +21,18 @@ use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// The bound of a contact that has not been solved yet: none is set.
-const UNSET_BOUND: f64 = f64::INFINITY;
-
 /// What is asked of friction in a step.
 #[derive(Clone, Debug)]
 pub(crate) struct LaggedFriction {
     /// One of [`FrictionModel::SOLVED`].
     pub model: FrictionModel,
-    /// The lagged number of each row as the step begins, m/s; empty under Coulomb's law.
-    pub at_start: Vec<f64>,
-    /// The same in the last solve.
+    /// The lagged number of each row, m/s; empty under Coulomb's law.
     pub now: Vec<f64>,
 }
 
 impl Default for LaggedFriction {
     fn default() -> Self {
-        Self { model: FrictionModel::Coulomb, at_start: Vec::new(), now: Vec::new() }
+        Self { model: FrictionModel::Coulomb, now: Vec::new() }
     }
 }
 
@@ -128,14 +123,8 @@ impl FrictionProjection for BoundedFriction {
     const LAGS: bool = true;
 
     #[inline(always)]
-    fn project<M: Model>(
-        law: &ContactLaw,
-        lagged: f64,
-        [normal, tangential]: [f64; 2],
-    ) -> [f64; 2] {
-        let shifted = law::signorini(normal);
-        let bound = if lagged == UNSET_BOUND { law.friction_bound(shifted) } else { lagged };
-        [shifted, law::coulomb(tangential, bound)]
+    fn project<M: Model>(_: &ContactLaw, bound: f64, [normal, tangential]: [f64; 2]) -> [f64; 2] {
+        [law::signorini(normal), law::coulomb(tangential, bound)]
     }
 }
 
@@ -154,71 +143,30 @@ impl FrictionProjection for ConeFriction {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Says by which model a problem is to be solved whose rows and velocities are there; `last_solved` gives P_n
-    /// (N·s) of the last solve of a contact, or nothing where it has met none.
-    pub(crate) fn begin_friction(
-        &mut self,
-        model: FrictionModel,
-        last_solved: impl Fn(usize) -> Option<f64>,
-    ) {
+    /// Says by which model a problem is to be solved whose rows and velocities are there, and takes the lagged numbers of
+    /// the present impulses, or of the velocities that the step begins with.
+    pub(crate) fn begin_friction(&mut self, model: FrictionModel) {
         self.friction.model = model;
-        let mut lagged = std::mem::take(&mut self.friction.at_start);
-        lagged.clear();
+        self.friction.now.clear();
         match model {
             _ if !M::FRICTION => {}
             FrictionModel::Coulomb | FrictionModel::OfMethod => {}
-            FrictionModel::Tresca => {
-                lagged.extend(self.rows().map(|(number, row)| {
-                    let last = last_solved(self.rows.contacts[number] as usize);
-                    last.map_or(UNSET_BOUND, |normal_impulse| {
-                        let reduced = normal_impulse / row.effective_mass;
-                        let shifted = law::signorini(reduced + self.capture(number));
-                        self.law.friction_bound(shifted)
-                    })
-                }));
-            }
-            FrictionModel::Associated => lagged.resize(self.rows.len(), 0.0),
+            FrictionModel::Tresca => self.renew_friction(),
+            FrictionModel::Associated => self.friction.now.resize(self.rows.len(), 0.0),
             FrictionModel::Desaxce => {
+                let mut lagged = std::mem::take(&mut self.friction.now);
                 self.for_each_velocity(&self.bodies.before, |row, [_, tangential]| {
                     lagged.push(opening(&self.law, row, tangential));
                 });
+                self.friction.now = lagged;
             }
         }
-        self.friction.at_start = lagged;
-        self.restart_friction();
-    }
-
-    /// Takes the lagged numbers that the step begins with.
-    pub(crate) fn restart_friction(&mut self) {
-        let LaggedFriction { at_start, now, .. } = &mut self.friction;
-        now.clone_from(at_start);
-    }
-
-    /// Takes the lagged numbers anew, for all solves that are still to come of the step.
-    pub(crate) fn go_on_from_present(&mut self) {
-        self.renew_friction();
-        let LaggedFriction { at_start, now, .. } = &mut self.friction;
-        at_start.clone_from(now);
     }
 
     /// Goes back to Coulomb's law.
     pub(crate) fn forget_bounds(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
-    }
-
-    /// True where contacts are to be bounded that have not been solved yet.
-    pub(crate) fn has_unset_bounds(&self) -> bool {
-        self.friction.model == FrictionModel::Tresca && self.friction.now.contains(&UNSET_BOUND)
-    }
-
-    /// Gives such contacts Coulomb's bounds at the present impulses, for all solves of the step.
-    pub(crate) fn set_unset_bounds(&mut self) {
-        for (row, lagged) in self.rows.iter().zip(&mut self.friction.now) {
-            if *lagged == UNSET_BOUND {
-                *lagged = self.law.friction_bound(row.shifted_impulse);
-            }
-        }
     }
 
     /// Takes the lagged numbers anew, from the present impulses and velocities.
@@ -293,11 +241,10 @@ mod tests {
     }
 
     #[test]
-    fn a_bound_lags_but_for_contacts_that_have_none_yet() {
+    fn a_bound_lags() {
         let project =
             |bound, trial| BoundedFriction::project::<SpinningPlane>(&law(0.5), bound, trial);
         assert_eq!(project(0.3, [4.0, -9.0]), [4.0, -0.3]);
         assert_eq!(project(0.3, [-4.0, 9.0]), [0.0, 0.3]);
-        assert_eq!(project(UNSET_BOUND, [4.0, -9.0]), [4.0, -2.0]);
     }
 }

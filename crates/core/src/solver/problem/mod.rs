@@ -115,7 +115,7 @@ impl<M: Model> StepProblem<M> {
             self.add_surfaces(contacts, &rebound, surfaces);
         }
         self.form_velocities();
-        self.begin_friction(settings.model(), |index| contacts.last_solved(index));
+        self.begin_friction(settings.model());
     }
 
     /// Packs the bodies as they are, and as gravity alone would leave them.

@@ -69,11 +69,10 @@ pub(super) fn solve_range<M: Model>(
     let Stage { state, problem, memory, .. } = stage;
     let fastest = state.fastest();
     let contacts = &mut state.contacts;
-    let mut solver = settings.solver;
     let mut round = 0;
     loop {
         round += 1;
-        result.report.add(solve(problem, memory, &solver));
+        result.report.add(solve(problem, memory, &settings.solver));
         let limits = BondLimits { bonds: contacts.bonds(), shocks, numbers };
         if round == 1 {
             *restless |= limits.is_restless::<M>(problem, fastest, lowered);
@@ -86,9 +85,6 @@ pub(super) fn solve_range<M: Model>(
             break;
         }
         shorten(problem, lowered);
-        // What lags is of the solution before, which a convex model needs once.
-        problem.go_on_from_present();
-        solver.model_solves = 1;
     }
     shocks.finish(problem, contacts);
     result.bonds = Some(update_bonds(problem, contacts.bonds_mut(), shocks, numbers));

@@ -27,7 +27,7 @@ use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Model, SolveReport, SolverSettings};
+use crate::solver::{Approach, Model, SolveReport};
 use crate::world::{FrictionCone, Parameters, World};
 
 pub(super) const INFO: StepperInfo = StepperInfo {
@@ -133,10 +133,6 @@ pub(super) fn advance<M: Model>(
             Err(given_up) => result.report = result.report.after(given_up),
         }
     }
-    // The bounds of the piece before are as young as those of a further solve of the whole.
-    let solver = &settings.solver;
-    let model_solves = solver.model_solves.div_ceil(substeps);
-    let settings = &Settings { solver: SolverSettings { model_solves, ..*solver }, ..*settings };
     let result = stage.in_pieces(substeps, settings, result, |stage, settings, result| {
         prepare(stage, settings);
         if let Ok(piece) = try_step(stage, settings, memory, true) {

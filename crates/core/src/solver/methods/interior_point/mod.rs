@@ -114,16 +114,19 @@ pub(super) fn solve<M: Model>(
     settings: &SolverSettings,
     mut go_on: impl FnMut(&mut StepProblem<M>, &SolverSettings) -> SolveReport,
 ) -> SolveReport {
-    if is_wedged(problem) {
-        take_impulses_back(problem);
-    }
-    solve_models(problem, settings, |problem| match problem.friction.model {
-        _ if !M::FRICTION => convex::<M, HalfLine>(problem, memory, settings),
-        FrictionModel::Tresca => convex::<M, Strip>(problem, memory, settings),
-        FrictionModel::Associated | FrictionModel::Desaxce => {
-            convex::<M, Cone>(problem, memory, settings)
+    let mut is_first = true;
+    solve_models(problem, settings, |problem| {
+        if std::mem::take(&mut is_first) && is_wedged(problem) {
+            take_impulses_back(problem);
         }
-        _ => coulomb(problem, memory, settings, &mut go_on),
+        match problem.friction.model {
+            _ if !M::FRICTION => convex::<M, HalfLine>(problem, memory, settings),
+            FrictionModel::Tresca => convex::<M, Strip>(problem, memory, settings),
+            FrictionModel::Associated | FrictionModel::Desaxce => {
+                convex::<M, Cone>(problem, memory, settings)
+            }
+            _ => coulomb(problem, memory, settings, &mut go_on),
+        }
     })
 }
 
@@ -159,6 +162,20 @@ fn take_impulses_back<M: Model>(problem: &mut StepProblem<M>) {
         (row.shifted_impulse, row.tangential_impulse) = (capture_speed, 0.0);
     }
     problem.form_velocities();
+}
+
+/// Solves a problem within the bounds of friction that it has.
+#[cfg(test)]
+pub(crate) fn solve_within_bounds<M: Model>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let memory = &mut InteriorMemory::default();
+    if M::FRICTION {
+        convex::<M, Strip>(problem, memory, settings)
+    } else {
+        convex::<M, HalfLine>(problem, memory, settings)
+    }
 }
 
 fn convex<M: Model, S: Shape>(

@@ -18,10 +18,6 @@ const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13,
 /// Largest tolerance of shocks, which are small against the step's own velocities.
 const LOOSEST: f64 = 1e-3;
 
-/// Sweeps under Coulomb's law that bounds of friction are taken from. With 10, and the bounds taken anew once, shocks of a
-/// dry pile lose 2 % less energy than under Coulomb's law; with these 0.5 ± 0.5 %, at half the factorisations.
-const SWEEPS_FOR_BOUNDS: u32 = 50;
-
 /// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
@@ -41,20 +37,13 @@ fn solve_together<M: Model>(
             return earlier;
         }
     }
-    if model != FrictionModel::Coulomb {
-        // There is no solve before it to take bounds from: nothing acts on both sides of a shock.
-        for _ in 0..SWEEPS_FOR_BOUNDS {
-            sweep::<M, false>(part);
-        }
-        part.begin_friction(model, |_| None);
-        part.go_on_from_present();
-    }
+    part.begin_friction(model);
     let of_step = (least / scale(part)).min(LOOSEST);
     let tolerance = match settings.stop {
         StopTest::Residual => settings.tolerance.max(of_step),
         _ => settings.tolerance,
     };
-    solve(part, memory, &SolverSettings { tolerance, model_solves: 1, ..*settings }).after(earlier)
+    solve(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
 }
 
 impl Shocks {
