@@ -19,8 +19,8 @@
 //! Where steps become short near the end, as on dense piles, whose contacts carry more than they need, proximal
 //! multipliers (`proximal`) end the solve; where the path leads nowhere they are tried from far away.
 //!
-//! A start is the point of the path that is nearest to where the natural map leads from the impulses of the
-//! step before, as far along as these are good.
+//! A start is the point of the path that is nearest to where the natural map leads from the impulses that sweeps leave,
+//! as far along as these are good.
 //!
 //! Coulomb's law is no convex problem, and its path may turn back (`path`).
 
