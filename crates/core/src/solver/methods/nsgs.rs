@@ -19,9 +19,6 @@ use crate::solver::settings::{FrictionModel, SolverSettings};
 /// first, which may be solved then: most of a pile at rest are. Fewer: what they are taken from is further from Coulomb's
 /// law, at 2,000 grains more than what a first solve leads to; more: the sweeps cost more than the second solve that they save.
 const SWEEPS_FOR_BOUNDS: [u32; 2] = [4, 46];
-/// As many times more of the latter where a step begins from no impulses, which have further to go: with one, 138 grains at Bond 100 and
-/// 2e-4 s slump by 0.016 ± 0.010 more than under Coulomb's law, with these by 0.008 ± 0.007.
-const FROM_NOTHING: u32 = 10;
 
 /// Solves a prepared problem by sweeps, under the model of friction that it was prepared for.
 pub(super) fn solve<M: Model>(
@@ -70,10 +67,7 @@ fn take_bounds_from_sweeps<M: Model>(
     settings: &SolverSettings,
     report: &mut SolveReport,
 ) {
-    let is_none = |(number, row): (_, &_)| problem.reduced_impulse(number, row) == [0.0; 2];
-    let longer = if problem.rows().all(is_none) { FROM_NOTHING } else { 1 };
-    let [first, more] = SWEEPS_FOR_BOUNDS;
-    for sweeps in [first, longer * more] {
+    for sweeps in SWEEPS_FOR_BOUNDS {
         for _ in 0..sweeps {
             sweep::<M, false>(problem);
         }
