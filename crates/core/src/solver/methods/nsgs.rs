@@ -48,10 +48,10 @@ pub(super) fn solve_models<M: Model>(
     if !M::FRICTION || problem.friction.model == FrictionModel::Coulomb {
         return solve_once(problem);
     }
-    problem.begin_friction(problem.friction.model);
     let mut report = SolveReport::default();
-    if problem.friction.model == FrictionModel::Tresca {
-        take_bounds_from_sweeps(problem, settings, &mut report);
+    match problem.friction.model {
+        FrictionModel::Tresca => take_bounds_from_sweeps(problem, settings, &mut report),
+        model => problem.begin_friction(model),
     }
     report = solve_once(problem).after(report);
     for _ in 1..settings.model_solves {
