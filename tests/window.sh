@@ -83,10 +83,10 @@ head -c 6 "$work"/out/slump-pile-*.gif | grep -q GIF89a || fail "the animation i
 xdotool mousemove $(at save 0.5) click 1
 sleep 1
 
-# With Shift, a click puts a grain above the pile; another takes it out.
+# With Shift, a click puts a grain beside the pile, however high that stands; another takes it out.
 grains=$(value "s['grains']")
-above=$(value "'%d %d' % (lambda c: ((c[0] + c[2]) / 2, c[1] + 0.1 * (c[3] - c[1])))(s['controls']['scene'])")
-xdotool mousemove $above keydown Shift_L
+beside=$(value "'%d %d' % (lambda c: (c[0] + 0.9 * (c[2] - c[0]), c[1] + 0.1 * (c[3] - c[1])))(s['controls']['scene'])")
+xdotool mousemove $beside keydown Shift_L
 sleep 0.5
 import -window root "$shots/window-hand.png"
 xdotool click 1
