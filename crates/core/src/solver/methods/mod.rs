@@ -8,6 +8,7 @@ mod interior_point;
 mod jacobi;
 mod newton;
 mod nncg;
+mod nonlinear_elimination;
 mod nsgs;
 mod nsgs_parallel;
 #[cfg(test)]

@@ -15,7 +15,8 @@
 //! contact, λ_t' = ±μσ', brings the unsymmetric n + (±μ) t. The exact solution is a fixed point for
 //! any ε: a small one converges in few steps, a larger one is more robust where guesses flip.
 //! After each step the impulses are projected on what the law allows, velocities are formed
-//! anew from them, and a few Gauss–Seidel sweeps mend what the guesses got wrong.
+//! anew from them, a few Gauss–Seidel sweeps mend what the guesses got wrong, and the contacts that hold
+//! most of the residual then are solved alone (`nonlinear_elimination`).
 //!
 //! What is solved for is the *change* of the velocities, with the change of the impulses at rest as
 //! the load. Solved for the velocities themselves, rounding would leave an error of V·10⁻¹⁶ in them
@@ -26,6 +27,7 @@
 
 use super::contact_system::{BodySystem, WorkVectors};
 use super::nncg;
+use super::nonlinear_elimination::NonlinearElimination;
 use super::nsgs::{settles_in, sweep};
 use super::stopping::SolveReport;
 use crate::contact::law::{coulomb, signorini};
@@ -75,6 +77,7 @@ struct NewtonWorkspace<const D: usize> {
     matrix: BlockMatrix<D>,
     vector: Vec<[f64; D]>,
     guesses: Vec<Guess>,
+    alone: NonlinearElimination,
     /// (σ, λ_t) of the rows to go back to.
     saved: Vec<[f64; 2]>,
     /// (σ, λ_t) of the smallest residual so far.
@@ -132,6 +135,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 sweep::<M, false>(self.problem);
             }
             report.sweeps += SWEEPS_AFTER - 1;
+            self.workspace.alone.apply(self.problem);
             if self.settles_in(1, &mut report) {
                 return report;
             }

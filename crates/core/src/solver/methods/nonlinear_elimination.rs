@@ -1,0 +1,145 @@
+//! Non-linear elimination: before the next linearisation, the few contacts that hold most of the residual are solved
+//! alone, with the rest of the pile as it stands (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
+//!
+//! That is kept where it brings the residual of the whole pile down. In a box that is too full, contacts that are solved
+//! alone push each other ever harder, and without that condition discs went on at 7 √(g d).
+//!
+//! Where a few contacts change between sticking, sliding and opening, they hold a Newton step short for all the others.
+//! Of 300 steps of 2,000 grains in collapse, solved to 1e-3 under Coulomb's law, 0, 11 and 22 are left at Bond 0, 20 and
+//! 50 without elimination, and 0, 5 and 10 with it.
+
+use super::sweep::ImpulseChange;
+use crate::solver::kinematics::Model;
+use crate::solver::problem::{CoulombFriction, FrictionProjection, StepProblem, errors, residual};
+
+/// Share of the squared residual that is held by the contacts that are solved alone.
+const HELD: f64 = 0.9;
+/// Sweeps over them. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339 are left without any, 1,152 with 30, 878 with 100
+/// and 759 with 300, in 1, 1.5, 2.1 and 3.9 times the time; at 2,000 grains 100 cost no time.
+const SWEEPS: u32 = 100;
+
+/// Which contacts are solved alone; only its memory is kept.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NonlinearElimination {
+    /// Squared residual by row, (N·s)², and the rows with the largest first.
+    squares: Vec<f64>,
+    by_square: Vec<usize>,
+    /// By body: at one of those contacts; at one of them or beside it.
+    at: Vec<bool>,
+    around: Vec<bool>,
+    fixed: Vec<usize>,
+    pairs: Vec<usize>,
+    /// (σ, λ_t) of the rows as it began.
+    before: Vec<[f64; 2]>,
+}
+
+impl NonlinearElimination {
+    /// Solves the contacts of the bodies at, and beside, those that hold the residual, under Coulomb's law. These are
+    /// sweeps of a part, and no report counts them.
+    pub(super) fn apply<M: Model>(&mut self, problem: &mut StepProblem<M>) {
+        let before = residual(problem);
+        problem.rows.read_impulses(&mut self.before);
+        self.choose(problem);
+        let StepProblem { bodies, rows, law, .. } = problem;
+        let project = |trial| CoulombFriction::<false>::project::<M>(law, 0.0, trial);
+        let mut change = ImpulseChange::default();
+        for _ in 0..SWEEPS {
+            for &number in &self.fixed {
+                rows.fixed[number].solve::<false>(&mut bodies.now, &mut change, project);
+            }
+            for &number in &self.pairs {
+                rows.pairs[number].solve::<false>(&mut bodies.now, &mut change, project);
+            }
+        }
+        // Not a number is not below anything.
+        let is_better = residual(problem) < before;
+        if !is_better {
+            problem.write_impulses(self.before.iter().copied());
+        }
+    }
+
+    fn choose<M: Model>(&mut self, problem: &StepProblem<M>) {
+        let Self { squares, by_square, at, around, fixed, pairs, .. } = self;
+        squares.clear();
+        problem.for_each_velocity(&problem.bodies.now, |row, velocity| {
+            let restitution = row.restitution_velocity;
+            let [normal, tangential] =
+                errors::<M, f64>(&problem.law, row.impulse(), restitution, velocity);
+            let mass = row.effective_mass;
+            squares.push(mass * mass * (normal * normal + tangential * tangential));
+        });
+        by_square.clear();
+        by_square.extend(0..squares.len());
+        by_square.sort_unstable_by(|&one, &other| squares[other].total_cmp(&squares[one]));
+        let rows = &problem.rows;
+        let most = HELD * squares.iter().sum::<f64>();
+        at.clear();
+        at.resize(problem.bodies.now.len(), false);
+        let mut held = 0.0;
+        for &number in &*by_square {
+            if held >= most {
+                break;
+            }
+            held += squares[number];
+            if let Some(row) = rows.fixed.get(number) {
+                at[row.i as usize] = true;
+            } else {
+                let row = &rows.pairs[number - rows.fixed.len()];
+                at[row.i as usize] = true;
+                at[row.j as usize] = true;
+            }
+        }
+        around.clone_from(at);
+        for row in &rows.pairs {
+            let [i, j] = [row.i as usize, row.j as usize];
+            if at[i] || at[j] {
+                around[i] = true;
+                around[j] = true;
+            }
+        }
+        fixed.clear();
+        fixed.extend((0..rows.fixed.len()).filter(|&number| around[rows.fixed[number].i as usize]));
+        pairs.clear();
+        pairs.extend((0..rows.pairs.len()).filter(|&number| {
+            let row = &rows.pairs[number];
+            around[row.i as usize] || around[row.j as usize]
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::ContactLaw;
+    use crate::solver::SpinningPlane;
+    use crate::solver::methods::nsgs::sweep;
+    use crate::solver::methods::random_problem::random_problem;
+    use crate::world::FrictionCone;
+
+    #[test]
+    fn what_one_contact_holds_is_solved_there_and_nowhere_else() {
+        for seed in 0..20 {
+            let law = ContactLaw::new(0.4, 0.1, FrictionCone::Shifted);
+            // Bodies of contacts are at most two numbers apart, so that the far end is far.
+            let mut problem = random_problem::<SpinningPlane>(seed, law, 60, 120, 3, 0.0..0.3);
+            for _ in 0..2_000 {
+                sweep::<SpinningPlane, false>(&mut problem);
+            }
+            let solved = residual(&problem);
+            let pairs = problem.rows.pairs.iter_mut();
+            let struck = pairs.min_by_key(|row| row.i.abs_diff(30)).expect("some of 120");
+            struck.shifted_impulse += 3.0;
+            problem.form_velocities();
+            let before = residual(&problem);
+            assert!(before > 100.0 * solved, "seed {seed}: {solved:e}, {before:e}");
+            let impulses = problem.rows.iter().map(|row| row.impulse()).collect::<Vec<_>>();
+            NonlinearElimination::default().apply(&mut problem);
+            let after = residual(&problem);
+            assert!(after < 0.2 * before, "seed {seed}: {before:e}, {after:e}");
+            for (row, before) in problem.rows.iter().zip(impulses) {
+                let is_far = [row.i, row.j].iter().all(|body| !(20..40).contains(body));
+                assert!(!is_far || row.impulse() == before, "seed {seed}: {} {}", row.i, row.j);
+            }
+        }
+    }
+}
