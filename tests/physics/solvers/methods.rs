@@ -155,7 +155,7 @@ fn every_method_solves_nearly_all_steps_of_moving_piles() {
     let moments = moments();
     for info in METHODS.iter() {
         let tolerance = tight_for(info.method);
-        let (mut solved, mut quick) = (0, 0);
+        let mut solved = 0;
         for moment in &moments {
             let solver = SolverSettings { method: info.method, tolerance, ..*moment.solver() };
             let solver = SolverSettings { max_sweeps: 30_000, ..solver };
