@@ -126,10 +126,11 @@ fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     })
 }
 
+/// Made by sweeps: piles are chaotic, so that a change of what makes them changes what all methods are asked.
 fn moments() -> Vec<Simulation> {
     let mut moments = Vec::new();
     for (_, _, scene) in moving_piles() {
-        let mut run = with(&scene, Method::Newton, 1e-8);
+        let mut run = with(&scene, Method::Nsgs, 1e-8);
         for _ in 0..6 {
             take_steps(&mut run, 20);
             moments.push(run.clone());
@@ -168,20 +169,15 @@ fn every_method_solves_nearly_all_steps_of_moving_piles() {
     }
 }
 
-/// Of five steps each method solves four, whatever it stops by, and all but one of these from their solution in a quarter of
-/// the sweeps: `apgd` does not solve all, and `admm` may begin with a bad penalty.
 #[test]
 fn every_method_honours_every_stopping_test_and_the_limit() {
     let moments = moments();
-    let stops = [
-        (StopTest::RelativeChange, 1e-5),
-        (StopTest::ImpulsePerMass, 1e-4),
-        (StopTest::Residual, 1e-4),
-    ];
-    for (info, (stop, tolerance)) in pairs(METHODS.iter(), stops) {
-        let name = format!("{} {stop:?}", info.name);
-        let (mut solved, mut quick) = (0, 0);
-        for moment in moments.iter().step_by(5) {
+    for (moment, info) in pairs(moments.iter().step_by(5), METHODS.iter()) {
+        for (stop, tolerance) in [
+            (StopTest::RelativeChange, 1e-5),
+            (StopTest::ImpulsePerMass, 1e-4),
+            (StopTest::Residual, 1e-4),
+        ] {
             let settings = SolverSettings {
                 method: info.method,
                 stop,
@@ -190,23 +186,21 @@ fn every_method_honours_every_stopping_test_and_the_limit() {
                 warm_start: false,
                 ..SolverSettings::SWEEPS
             };
+            let mut run = moment.clone();
+            run.set_solver(settings).expect("proper settings");
+            let [first, again] = run.next_problem(SolveTwice(settings, settings));
+            let name = format!("{} {stop:?}", info.name);
+            assert!(first.converged && again.converged, "{name}: {first:?}");
+            assert!(first.sweeps > 1, "{name}: {first:?}");
+            if stop == StopTest::Residual {
+                let most = first.sweeps.div_ceil(4);
+                assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
+            }
             let hasty = SolverSettings { tolerance: 1e-14, max_sweeps: 5, ..settings };
             let (report, residual) = next_with(moment, hasty);
             assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");
             assert!(residual <= 1.0, "{name}: {residual}");
-            let mut run = moment.clone();
-            run.set_solver(settings).expect("proper settings");
-            let [first, again] = run.next_problem(SolveTwice(settings, settings));
-            if !first.converged {
-                continue;
-            }
-            solved += 1;
-            assert!(again.converged && first.sweeps > 1, "{name}: {first:?}, {again:?}");
-            quick += u32::from(again.sweeps <= first.sweeps.div_ceil(4));
         }
-        assert!(solved >= 4, "{name}: {solved} of 5");
-        let is_quick = quick + 1 >= solved || stop != StopTest::Residual;
-        assert!(is_quick, "a warm start, {name}: {quick} of {solved}");
     }
 }
 
