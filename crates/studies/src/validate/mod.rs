@@ -72,10 +72,10 @@ pub struct ValidateOptions {
     /// The way to step, under which all is computed; but for moreau, experiments about methods are left out
     #[arg(long, value_name = "NAME", default_value = "moreau", value_parser = parser_of::<Stepper>())]
     pub stepper: Stepper,
-    /// Methods, each with every time step and effort [default: nsgs]
+    /// Methods, each with every time step and effort [default: auto, which certifies each step; nsgs where an effort is given]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
     pub methods: Vec<Method>,
-    /// Time steps, seconds [default: 1e-3, and 3e-4 unless quick]
+    /// Time steps, seconds [default: 1e-3]
     #[arg(
         long = "time-steps",
         value_name = "SECONDS",
@@ -83,7 +83,7 @@ pub struct ValidateOptions {
         allow_negative_numbers = true
     )]
     pub time_steps_secs: Vec<f64>,
-    /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either; auto certifies each step]
+    /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either; none by auto]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     pub sweeps: Vec<u32>,
     /// Efforts: residuals that a step is solved to, within 1,000 sweeps
@@ -103,7 +103,7 @@ pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
     let started = Instant::now();
     let ValidateOptions { experiments, out, quick, stepper, .. } = options;
     let ValidateOptions { methods, time_steps_secs, sweeps, tolerances, .. } = options;
-    let variants = step_variants(*quick, *stepper, methods, time_steps_secs, sweeps, tolerances)?;
+    let variants = step_variants(*stepper, methods, time_steps_secs, sweeps, tolerances)?;
     check_writable("out", out)?;
     let wanted: Vec<&'static Experiment> = EXPERIMENTS
         .iter()

@@ -109,12 +109,11 @@ fn of_variant(runs: &ExperimentRuns) -> String {
         runs.wall_secs(),
         runs.speed()
     );
-    if runs.unsolved() > 0.0 && !runs.has_sweeps_alone() {
-        let _ = write!(
-            text,
-            " {:.1} % of the steps were not solved as asked.",
-            100.0 * runs.unsolved()
-        );
+    if !runs.has_sweeps_alone() {
+        let _ = match runs.unsolved() {
+            0.0 => write!(text, " Every step was solved as asked."),
+            share => write!(text, " {:.1} % of the steps were not solved as asked.", 100.0 * share),
+        };
     }
     if let Some(why) = runs.spoilt() {
         let _ = write!(text, " Nothing is decided: {why}.");

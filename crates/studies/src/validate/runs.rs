@@ -37,9 +37,11 @@ impl ExperimentRuns {
         (self.experiment.judge)(&sound).into_iter().map(judge).collect()
     }
 
-    /// True if all that is asked of a step is a number of sweeps.
+    /// True if a step has a number of sweeps at most, and nothing that it is to be solved to.
     pub(super) fn has_sweeps_alone(&self) -> bool {
-        self.variant.is_none_or(|variant| matches!(variant.budget, SolveBudget::Sweeps(_)))
+        self.variant.is_none_or(|StepVariant { stepper, budget, .. }| {
+            !stepper.reads("solver") || matches!(budget, SolveBudget::Sweeps(_))
+        })
     }
 
     pub(super) fn wall_secs(&self) -> f64 {

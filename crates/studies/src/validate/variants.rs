@@ -77,7 +77,6 @@ impl StepVariant {
 /// # Errors
 /// Names the first value outside its range, one that is given twice, or one that the stepper does not read.
 pub(super) fn step_variants(
-    quick: bool,
     stepper: Stepper,
     methods: &[Method],
     time_steps_secs: &[f64],
@@ -104,13 +103,12 @@ pub(super) fn step_variants(
     let sweeps = sweeps.iter().map(|&count| SolveBudget::Sweeps(count));
     let tolerances = tolerances.iter().map(|&residual| SolveBudget::Residual(residual));
     let budgets: Vec<SolveBudget> = sweeps.chain(tolerances).collect();
-    let unasked: &[SolveBudget] = if stepper.reads("solver") { &UNASKED } else { &UNASKED[..1] };
-    let methods = if methods.is_empty() { &[Method::Nsgs] } else { methods };
-    let time_steps_secs: &[f64] = match (time_steps_secs.is_empty(), quick) {
-        (false, _) => time_steps_secs,
-        (true, true) => &[1e-3],
-        (true, false) => &[1e-3, 3e-4],
+    let methods: &[Method] = match (methods.is_empty(), budgets.is_empty()) {
+        (false, _) => methods,
+        (true, true) => &[Method::Auto],
+        (true, false) => &[Method::Nsgs],
     };
+    let time_steps_secs = if time_steps_secs.is_empty() { &[1e-3] } else { time_steps_secs };
     let mut variants = Vec::new();
     for &method in methods {
         for &time_step_secs in time_steps_secs {
@@ -118,7 +116,7 @@ pub(super) fn step_variants(
             let budgets = match (budgets.is_empty(), method) {
                 (false, _) => &budgets,
                 (true, Method::Auto) => &[SolveBudget::Certified][..],
-                (true, _) => unasked,
+                (true, _) => &UNASKED,
             };
             variants.extend(budgets.iter().map(of));
         }
@@ -145,35 +143,35 @@ mod tests {
 
     #[test]
     fn what_is_asked_is_crossed_and_the_rest_is_chosen() {
-        let unasked = step_variants(true, Stepper::Moreau, &[], &[], &[], &[]).expect("a choice");
-        assert_eq!(unasked.len(), 2);
+        let nsgs = [Method::Nsgs];
+        let nsgs = step_variants(Stepper::Moreau, &nsgs, &[], &[], &[]).expect("a choice");
+        assert_eq!(nsgs.len(), 2);
         let methods = [Method::Nsgs, Method::Newton];
-        let variants = step_variants(true, Stepper::Moreau, &methods, &[1e-3, 1e-4], &[5], &[1e-6])
+        let variants = step_variants(Stepper::Moreau, &methods, &[1e-3, 1e-4], &[5], &[1e-6])
             .expect("a choice");
         assert_eq!(variants.len(), 8);
         assert_eq!(variants[0].words(), "nsgs, Δt 1e-3 s, 5 sweeps");
         assert_eq!(variants[7].words(), "newton, Δt 1e-4 s, residual 1e-6");
-        let one = step_variants(true, Stepper::Moreau, &[], &[], &[7], &[]).expect("a choice");
+        let one = step_variants(Stepper::Moreau, &[], &[], &[7], &[]).expect("a choice");
         assert!(one.len() == 1 && one[0].budget == SolveBudget::Sweeps(7));
-        let auto = [Method::Auto];
-        let auto = step_variants(true, Stepper::Moreau, &auto, &[], &[], &[]).expect("a choice");
+        let auto = step_variants(Stepper::Moreau, &[], &[], &[], &[]).expect("a choice");
         assert_eq!((auto.len(), auto[0].words()), (1, "auto, Δt 1e-3 s, certified".to_owned()));
         let mut scene = dry("packing", loose(10, 5.0, 1));
         scene.solver = SolverSettings::PAPER;
         auto[0].apply(&mut scene);
         assert_eq!(scene.solver, SolverSettings::default());
         let words = |stepper| -> Vec<String> {
-            let chosen = step_variants(true, stepper, &[], &[], &[], &[]).expect("a choice");
+            let chosen = step_variants(stepper, &[], &[], &[], &[]).expect("a choice");
             chosen.iter().map(StepVariant::words).collect()
         };
-        assert_eq!(words(Stepper::Range)[1], "range, nsgs, Δt 1e-3 s, 100 sweeps");
+        assert_eq!(words(Stepper::Range), ["range, auto, Δt 1e-3 s, certified"]);
         assert_eq!(words(Stepper::Dem), ["dem, Δt 1e-3 s"]);
     }
 
     #[test]
     fn what_is_no_number_or_comes_twice_is_refused_by_name() {
         let refused = |steps: &[f64], sweeps: &[u32], tolerances: &[f64]| {
-            let choice = step_variants(true, Stepper::Moreau, &[], steps, sweeps, tolerances);
+            let choice = step_variants(Stepper::Moreau, &[], steps, sweeps, tolerances);
             choice.expect_err("a refusal").to_string()
         };
         assert!(refused(&[1e-3, -1.0], &[], &[]).starts_with("time-steps is -1"));
@@ -182,7 +180,7 @@ mod tests {
         assert!(refused(&[], &[0], &[]).starts_with("sweeps is 0"));
         assert!(refused(&[], &[3, 3], &[]).starts_with("sweeps is 3 twice"));
         assert!(refused(&[], &[], &[f64::NAN]).starts_with("tolerances is NaN"));
-        let said = step_variants(true, Stepper::Dem, &[Method::Newton], &[], &[], &[]);
+        let said = step_variants(Stepper::Dem, &[Method::Newton], &[], &[], &[]);
         let said = said.expect_err("a refusal").to_string();
         assert!(said.starts_with("methods is given, but must be left out under dem"), "{said}");
     }
