@@ -29,6 +29,13 @@ fn lines_of(lines: &[&str]) -> Vec<String> {
     text.lines().map(str::to_owned).filter(|line| !line.trim().is_empty()).collect()
 }
 
+/// What the program says against words after its name.
+fn refusal(words: Vec<String>) -> Option<String> {
+    let words = std::iter::once("slump".to_owned()).chain(words);
+    let error = slump::cli::command().try_get_matches_from(words).err()?;
+    error.use_stderr().then(|| error.to_string())
+}
+
 #[test]
 fn commands_of_documents_are_taken() {
     let mut refused = Vec::new();
@@ -39,16 +46,36 @@ fn commands_of_documents_are_taken() {
         for line in shell.flat_map(|(_, lines)| lines_of(&lines)) {
             let Some(words) = command_in(&line) else { continue };
             taken += 1;
-            let words = std::iter::once("slump".to_owned()).chain(words);
-            if let Err(error) = slump::cli::command().try_get_matches_from(words)
-                && error.use_stderr()
-            {
+            if let Some(error) = refusal(words) {
                 refused.push(format!("{}: {line}: {error}", page.display()));
             }
         }
     }
     assert!(refused.is_empty(), "{}", refused.join("\n"));
     assert!(taken > 50, "{taken} commands");
+}
+
+#[test]
+fn commands_of_reports_are_taken_and_name_no_folder_of_a_machine() {
+    let mut reports = 0;
+    for file in std::fs::read_dir(root().join("assets/reports")).expect("reports") {
+        let path = file.expect("a report").path();
+        let command = match path.extension().is_some_and(|extension| extension == "json") {
+            true => json(&path)["command"].as_str().expect("a command").to_owned(),
+            false => {
+                let text = read(&path);
+                let (_, rest) = text.split_once("; slump ").expect("a command after the date");
+                let end = rest.find([';', '\n']).expect("an end");
+                format!("slump {}", rest[..end].trim_end_matches('.'))
+            }
+        };
+        let words = command_in(&command).unwrap_or_else(|| panic!("{}: {command}", path.display()));
+        let is_of_a_machine = words.iter().any(|word| word.starts_with('/'));
+        assert!(!is_of_a_machine, "{}: {command}", path.display());
+        assert_eq!(refusal(words), None, "{}: {command}", path.display());
+        reports += 1;
+    }
+    assert!(reports > 15, "{reports} reports");
 }
 
 /// What a page shows of a scene file.
