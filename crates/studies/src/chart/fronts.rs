@@ -28,18 +28,23 @@ const CHARACTER: f64 = 0.018;
 const HIGH: f64 = 0.05;
 
 impl Chart {
-    /// Adds words beside the ends of curves on logarithmic axes: to the right of what ends close by, and moved apart.
+    /// Adds words beside the ends of curves on logarithmic axes: to the right of points close by, and moved apart.
     pub fn add_end_labels(&mut self, mut ends: Vec<(String, Rgb, (f64, f64))>) {
         let part = |axis: &Axis, share: f64| (axis.to / axis.from).powf(share);
         let high = part(&self.y, HIGH);
         ends.sort_by(|(.., one), (.., other)| one.1.total_cmp(&other.1));
-        let all: Vec<(f64, f64)> = ends.iter().map(|(.., end)| *end).collect();
+        let points = |layer: &Layer| match layer {
+            Layer::Curve { points, .. } => points.clone(),
+            _ => Vec::new(),
+        };
+        let all: Vec<(f64, f64)> =
+            self.layers.iter().flat_map(points).map(|point| (point.x, point.y)).collect();
         let mut last = 0.0;
         for (text, colour, (x, y)) in ends {
             last = f64::max(y, last * high);
             let long = part(&self.x, CHARACTER * (text.chars().count() + 1) as f64);
             let is_in_the_way = |(other_x, other_y): &&(f64, f64)| {
-                // What ends a little below rises through the label.
+                // What is a little below rises through the label.
                 let heights = last / (high * high)..last * high;
                 (1.0..long).contains(&(other_x / x)) && heights.contains(other_y)
             };
@@ -52,7 +57,7 @@ impl Chart {
 
 #[cfg(test)]
 mod tests {
-    use super::super::PALETTE;
+    use super::super::{Look, PALETTE, points};
     use super::*;
 
     #[test]
@@ -68,8 +73,10 @@ mod tests {
         let axis = || Axis::log("", 1e-4, 1e4);
         let mut chart = Chart::new("", axis(), axis());
         let ends = PALETTE.map(|colour| ("one".to_owned(), colour, (1.0, 0.01)));
-        let near = ("near".to_owned(), PALETTE[0], (3.0, 0.01));
-        chart.add_end_labels(ends.into_iter().chain([near]).collect());
+        // It begins beside them and ends elsewhere.
+        let near = [(3.0, 0.01), (9.0, 1e-4)];
+        chart.layers.push(Layer::quiet("near", points(near), PALETTE[0], Look::LineAndDots));
+        chart.add_end_labels(ends.to_vec());
         let places = chart.layers.iter().filter_map(|label| match label {
             Layer::Words { at, .. } => Some(*at),
             _ => None,
