@@ -15,8 +15,8 @@ use crate::solver::problem::{CoulombFriction, FrictionProjection, StepProblem, e
 /// Share of the squared residual that is held by the contacts that are solved alone.
 const HELD: f64 = 0.9;
 /// Sweeps over them. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339 are left without any, 1,152 with 30, 878 with 100
-/// and 759 with 300, in 1, 1.5, 2.1 and 3.9 times the time; at 2,000 grains 100 cost a third more. Only where they are less
-/// than 0.3 of all contacts, 1,082 are left in 1.15 times the time, and 15 instead of 10 of 2,000 grains at Bond 50.
+/// and 759 with 300, in 1, 1.5, 2.1 and 3.9 times the time; at 2,000 grains 100 take 1.4 times the time. Where they are held
+/// to parts of less than 0.3 of all contacts, 1,082 are left in 1.15 times the time.
 const SWEEPS: u32 = 100;
 
 /// Which contacts are solved alone; only its memory is kept.
