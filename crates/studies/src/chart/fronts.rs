@@ -28,17 +28,16 @@ const CHARACTER: f64 = 0.018;
 const HIGH: f64 = 0.05;
 
 impl Chart {
-    /// Adds words beside the ends of curves on logarithmic axes: to the right of points close by, and moved apart.
+    /// Adds words beside the ends of curves on logarithmic axes: to the right of points of all curves there, and moved apart.
     pub fn add_end_labels(&mut self, mut ends: Vec<(String, Rgb, (f64, f64))>) {
         let part = |axis: &Axis, share: f64| (axis.to / axis.from).powf(share);
         let high = part(&self.y, HIGH);
         ends.sort_by(|(.., one), (.., other)| one.1.total_cmp(&other.1));
-        let points = |layer: &Layer| match layer {
-            Layer::Curve { points, .. } => points.clone(),
-            _ => Vec::new(),
-        };
-        let all: Vec<(f64, f64)> =
-            self.layers.iter().flat_map(points).map(|point| (point.x, point.y)).collect();
+        let curves = self.layers.iter().filter_map(|layer| match layer {
+            Layer::Curve { points, .. } => Some(points),
+            _ => None,
+        });
+        let all: Vec<(f64, f64)> = curves.flatten().map(|point| (point.x, point.y)).collect();
         let mut last = 0.0;
         for (text, colour, (x, y)) in ends {
             last = f64::max(y, last * high);
