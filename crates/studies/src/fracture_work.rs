@@ -17,9 +17,11 @@ pub(super) fn with_fracture_work(scene: &Scene, mut settings: Settings, joules: 
     match settings.stepper {
         Stepper::Dem => {
             // W = C₀²/2k: the work at a stiffness of 1 N/m tells k.
-            settings.parameters.stiffness = 1.0;
-            let of_one = fracture_work(scene, settings).unwrap_or(0.0);
-            settings.parameters.stiffness = of_one / joules;
+            let mut of_one = settings;
+            of_one.parameters.stiffness = 1.0;
+            if let Some(of_one) = fracture_work(scene, of_one) {
+                settings.parameters.stiffness = of_one / joules;
+            }
         }
         Stepper::Range => {
             // W = C₀ δc.

@@ -14,6 +14,7 @@ use super::results::{RunResult, RunsTable, Status};
 use super::statistics::mean;
 use crate::error::{Error, Result};
 use crate::output::write_file;
+use crate::solver::worst;
 
 pub(super) const REPORT: &str = "report.json";
 
@@ -40,14 +41,14 @@ struct RunGroup {
     starts: usize,
     /// Those that did not.
     spoilt: usize,
-    /// Mean slump, and half its 95 % interval; `null` where one start proves nothing.
+    /// Mean slump, and half its 95 % interval; `null` where no start has one, and where one start proves nothing.
     slump: [f64; 2],
     /// The same of this slump less that under the first value of a list, all else alike, over the starts of both. By the
     /// first name of the list.
     less_first: BTreeMap<String, [f64; 2]>,
     /// Share of the steps that were not solved as asked.
     unsolved: f64,
-    /// The largest bound that a step had on the velocities' error, m/s.
+    /// The largest bound that a step had on the velocities' error, m/s; `null` where a state was no longer finite.
     largest_velocity_error: f64,
     /// The largest of the runs' mean overlaps, d.
     mean_overlap: f64,
@@ -106,7 +107,7 @@ fn groups(study: &Study, table: &RunsTable) -> Result<Vec<RunGroup>> {
     };
     let interval = |values: &[f64]| {
         let mean = mean(values);
-        [mean.mean, mean.high - mean.mean]
+        [if values.is_empty() { f64::NAN } else { mean.mean }, mean.high - mean.mean]
     };
     let group = |values: &Vec<Value>| {
         let here = slumps(values);
@@ -142,8 +143,8 @@ fn groups(study: &Study, table: &RunsTable) -> Result<Vec<RunGroup>> {
             unsolved: unsolved as f64 / steps.max(1) as f64,
             largest_velocity_error: tallies()
                 .map(|tally| tally.largest_velocity_error)
-                .fold(0.0, f64::max),
-            mean_overlap: tallies().map(|tally| tally.mean_overlap).fold(0.0, f64::max),
+                .fold(0.0, worst),
+            mean_overlap: tallies().map(|tally| tally.mean_overlap).fold(0.0, worst),
             secs: all.iter().map(|run| run.secs).sum::<f64>() / all.len() as f64,
         }
     };
@@ -202,6 +203,15 @@ mod tests {
         assert_eq!((groups[0].starts, groups[0].spoilt, groups[0].slump[0]), (2, 1, 1.0));
         assert_eq!(groups[1].starts, 3);
         assert_eq!(groups[1].less_first["dt"][0], 3.0);
+    }
+
+    #[test]
+    fn where_no_run_has_a_slump_or_a_finite_state_none_is_told() {
+        let groups = reported("bond = [0, 20]\n", |run| run as f64, Some(0));
+        let json = serde_json::to_value(&groups[0]).expect("JSON");
+        assert!(groups[0].starts == 0 && json["slump"][0].is_null(), "{json}");
+        assert_eq!(groups[1].slump[0], 1.0);
+        assert!([f64::NAN, 1.0].into_iter().fold(0.0, worst).is_nan());
     }
 
     #[test]

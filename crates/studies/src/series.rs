@@ -23,7 +23,7 @@ pub(super) struct Series<'a> {
     settings: &'a SeriesSettings,
     time_step_secs: f64,
     /// The number of the next row: it is due at as many intervals.
-    next: u32,
+    next: u64,
     writer: csv::Writer<Vec<u8>>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Series<'a> {
     /// time, but for rounding.
     pub(super) fn add_if_due(&mut self, simulation: &Simulation) -> Result<()> {
         let reached = simulation.time_secs() + 1e-6 * self.time_step_secs;
-        if reached < f64::from(self.next) * self.settings.interval {
+        if reached < self.next as f64 * self.settings.interval {
             return Ok(());
         }
         let refuse = |error: csv::Error| Error::file(SERIES, error);
@@ -49,7 +49,7 @@ impl<'a> Series<'a> {
             let names = names.split(',').map(str::to_owned).chain(places);
             self.writer.write_record(names).map_err(refuse)?;
         }
-        self.next = 1 + (reached / self.settings.interval) as u32;
+        self.next = ((reached / self.settings.interval) as u64).saturating_add(1);
         let positions = &simulation.world().grains.positions;
         let place =
             |&grain: &usize| [positions[grain].x.to_string(), positions[grain].y.to_string()];

@@ -6,6 +6,11 @@ use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 /// Share of intervals that hold the true value.
 const CONFIDENCE: f64 = 0.95;
 
+/// p-value of the claim that one thing or the other is so, from the p-values of both (Bonferroni).
+pub(super) fn p_of_either(one: f64, other: f64) -> f64 {
+    (2.0 * one.min(other)).min(1.0)
+}
+
 /// A mean with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {

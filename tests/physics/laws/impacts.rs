@@ -323,6 +323,33 @@ fn a_grain_that_follows_a_wall_on_its_way_back_is_not_lost() {
 }
 
 #[test]
+fn a_fast_wall_and_a_fast_fixed_disc_are_looked_ahead_for() {
+    let gap = 0.1 * RADIUS;
+    let speed = 0.5 * RADIUS / DT;
+    for (physics, comes) in pairs([LINE, Physics::FULL], ["wall", "disc"]) {
+        let mut scene = pushed(physics, 0.0, gap, 10.0);
+        match comes {
+            "wall" => {
+                let point = DVec2::new(-RADIUS - gap, 0.0);
+                scene.boundaries = vec![piston(point, DVec2::X, speed, 10.0)];
+            }
+            _ => {
+                scene.boundaries.clear();
+                scene.fixed_discs = vec![fixed(DVec2::new(-2.0 * RADIUS - gap, 0.0), RADIUS)];
+                scene.motions = vec![discs_go(1, straight(speed * DVec2::X))];
+            }
+        }
+        let overlap = after(&scene, 2).observables().max_overlap;
+        assert_close(overlap, 0.2, 1e-6, "without the remedy the disc is overrun, d");
+        scene.remedies.speculative = true;
+        let run = after(&scene, 3);
+        let overlap = run.observables().max_overlap;
+        assert!(overlap < 1e-3, "{comes}: {overlap} d");
+        assert_close(run.velocity(0).x, speed, 1e-6, comes);
+    }
+}
+
+#[test]
 fn a_wall_that_cannot_be_is_refused_with_its_field() {
     for (speed, travel) in [(f64::NAN, 1.0), (f64::INFINITY, 1.0), (1.0, -1.0), (1.0, f64::NAN)] {
         let mut scene = pushed(LINE, 0.0, 0.0, travel);

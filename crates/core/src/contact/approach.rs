@@ -95,9 +95,11 @@ impl LookAhead {
         }
     }
 
-    /// The gap that what is no grain is to be seen at besides, m.
-    pub(crate) fn way_of_others(&self) -> f64 {
-        if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 }
+    /// The gap that what is no grain is to be seen at besides, m, where the fastest wall goes `way_of_walls` in the step.
+    pub(crate) fn way_of_others(&self, way_of_walls: f64) -> f64 {
+        let of_bonds =
+            if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 };
+        of_bonds.max(way_of_walls.min(self.reach))
     }
 }
 

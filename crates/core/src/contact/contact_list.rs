@@ -287,6 +287,7 @@ impl ContactList {
         world: &World,
         candidates: &Candidates,
         ahead: LookAhead,
+        velocity_of_wall: impl Fn(&Contact) -> DVec2 + Sync,
     ) {
         self.looks_ahead = true;
         let gap_tolerance = candidates.gap_tolerance();
@@ -308,7 +309,7 @@ impl ContactList {
             let i = contact.grain as usize;
             let other = match numbering.other(contact.other) {
                 Other::Grain(j) => velocities[j] + world.speed_of_image(i, j) * DVec2::X,
-                Other::FixedDisc(_) | Other::Feature(_) => DVec2::ZERO,
+                Other::FixedDisc(_) | Other::Feature(_) => velocity_of_wall(contact),
             };
             let opening = contact.normal.dot(velocities[i] - other);
             gap < ahead.reach && gap + ahead.time_step_secs * opening.min(0.0) < ahead.distance

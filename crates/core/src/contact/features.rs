@@ -102,10 +102,11 @@ impl Feature {
             let allowed = format!("apart from {}, at a finite distance", name(index));
             return Err(Error::value(name(index + 1), points[index + 1], allowed));
         }
-        let mut before = None;
-        for (index, ends) in points.windows(2).enumerate() {
-            let shape = Segment::new(ends[0], ends[1]);
-            let has_next = index + 2 < points.len();
+        let segments = || points.windows(2).map(|ends| Segment::new(ends[0], ends[1]));
+        let closes = points.first() == points.last();
+        let mut before = segments().last().filter(|_| closes);
+        for (index, shape) in segments().enumerate() {
+            let has_next = closes || index + 2 < points.len();
             features.push(Feature::Segment { shape, before, has_next });
             before = Some(shape);
         }
@@ -280,6 +281,14 @@ mod tests {
             points: vec![DVec2::new(-1.0, 1.0), DVec2::ZERO, DVec2::new(1.0, 1.0)],
         });
         assert_eq!(hits(&valley, 0.0, 0.5).len(), 2);
+        // Clockwise, so that its outside is on the left; the seam is at the top.
+        let [top, right, left] = [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0)].map(DVec2::from);
+        let closed = features(Boundary::Polyline { points: vec![top, right, left, top] });
+        for (corner, (x, y)) in [(top, (0.1, 1.5)), (right, (1.5, -0.1)), (left, (-1.5, -0.1))] {
+            let distance = corner.distance(DVec2::new(x, y));
+            let near = hits(&closed, x, y).into_iter().filter(|hit| hit.1 < 1.01 * distance);
+            assert_eq!(near.count(), 1, "{x} {y}");
+        }
     }
 
     #[test]

@@ -18,7 +18,7 @@
 //! which it has opened by δ_c.
 //!
 //! **τ in a step.** Let the bond be stretched by s and open with v at the beginning of the step, once
-//! the shocks of the step have gone through (`sim::bonds`), and let the other forces on the two grains
+//! the shocks of the step have gone through (`sim::steppers::range::bonds`), and let the other forces on the two grains
 //! change that speed by J during the step, evenly. With C = C₀Δt/m_ij the pair opens as
 //!
 //! > s(t) = s + v t + ½ a t²,  a = (J − C)/Δt,

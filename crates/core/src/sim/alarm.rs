@@ -7,8 +7,8 @@ use crate::contact::Feature;
 use crate::error::legible;
 use crate::setting::words;
 use crate::sim::losses::Losses;
-use crate::sim::{Observables, Settings};
-use crate::solver::Method;
+use crate::sim::{Observables, Settings, Stepper};
+use crate::solver::{FrictionModel, Method};
 use crate::world::{Physics, World};
 
 /// Steps in a row at the sweep limit that raise an alarm. Fewer: single hard steps, which do no
@@ -70,10 +70,11 @@ impl Alarm {
         );
         match self.kind {
             AlarmKind::NotFinite if stepper.reads("substeps") && parameters.substeps > 0 => {
-                format!(
-                    "try more than {} substeps, or 0 for as many as are stable",
-                    parameters.substeps
-                )
+                let stable = match stepper {
+                    Stepper::Dem => ", or 0 for as many as are stable",
+                    _ => "",
+                };
+                format!("try more than {} substeps{stable}", parameters.substeps)
             }
             AlarmKind::Overlap if self.step == 0 => {
                 "it begins so; the remedy push-out takes overlap away".into()
@@ -89,7 +90,12 @@ impl Alarm {
                  each other"
                     .into()
             }
-            AlarmKind::SweepLimit if solver.method != Method::Newton => "try method newton".into(),
+            // Under other models newton would be another law.
+            AlarmKind::SweepLimit
+                if solver.method != Method::Newton && solver.model() == FrictionModel::Coulomb =>
+            {
+                "try method newton".into()
+            }
             AlarmKind::SweepLimit => {
                 format!("try a tolerance above {:e}", solver.tolerance)
             }

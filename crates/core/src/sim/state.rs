@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Candidates, ContactList, LookAhead, Reach};
+use crate::contact::{Candidates, Contact, ContactList, LookAhead, Reach};
 use crate::error::Result;
 use crate::sim::pull::Pull;
 use crate::sim::step_times::Stopwatch;
@@ -72,7 +72,7 @@ impl State {
 
     fn detect_on<const AXES: usize>(&mut self, ahead: Option<LookAhead>) {
         let speed_of_border = self.speed_of_border();
-        let Self { world, candidates, contacts, .. } = self;
+        let Self { world, candidates, contacts, walls, .. } = self;
         let Some(ahead) = ahead else {
             candidates.update::<AXES>(world);
             return contacts.detect::<AXES>(world, candidates);
@@ -80,8 +80,12 @@ impl State {
         let slides = 0.5 * speed_of_border * ahead.time_step_secs;
         let way_of_grain =
             |grain: usize| ahead.way_of_grain(world.grains.velocities[grain]) + slides;
-        candidates.update_ahead::<AXES>(world, way_of_grain, ahead.way_of_others());
-        contacts.detect_ahead::<AXES>(world, candidates, ahead);
+        let way_of_walls = ahead.time_step_secs * walls.fastest(world, candidates);
+        candidates.update_ahead::<AXES>(world, way_of_grain, ahead.way_of_others(way_of_walls));
+        let velocity_of_wall = |contact: &Contact| {
+            walls.surface(world, contact).map_or(DVec2::ZERO, |surface| surface.velocity)
+        };
+        contacts.detect_ahead::<AXES>(world, candidates, ahead, velocity_of_wall);
     }
 
     /// Speed of the fastest grain or wall of a step that has begun, m/s.

@@ -129,7 +129,7 @@ settings! {
                 label: "Tilt",
                 symbol: "tilt",
                 unit: "°",
-                hint: "Turns gravity, as if all that is fixed were tilted the other way: above 0 to the right.",
+                hint: "Turns gravity to the right above 0, as if all that is fixed were tilted to the right.",
                 range: [-45.0, 45.0],
                 ..Control::PLAIN
             }),

@@ -159,7 +159,7 @@ impl Runs {
     /// How many times as wide as asked for the widest interval of a series is; 0 where it has to be no narrower.
     pub(super) fn excess(&self, series: usize) -> f64 {
         let of = |quantity: usize| {
-            if series > 0 && self.failure(series, quantity).is_some() {
+            if [0, series].iter().any(|&one| self.failure(one, quantity).is_some()) {
                 return 0.0;
             }
             let interval = self.interval(series, quantity);
@@ -312,4 +312,28 @@ fn take(
         runs.all[job.series].push(ran);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quantity_that_the_scene_does_not_have_takes_no_time_from_one_that_it_has() {
+        // The second quantity has a value in the variant alone, as the energy of bonds has under range.
+        let run = |SeriesRun { series, start }: SeriesRun| {
+            let only_of_the_variant = (series > 0).then_some(1.0);
+            let values = vec![Some(0.01 * (start % 3) as f64), only_of_the_variant];
+            let values = RunValues { values, failure: None, unsolved: 0.0, run_secs: 1.0 };
+            Ok(Ran { values, secs: 1.0, is_free: false })
+        };
+        let limits =
+            Limits { cost_secs: 10_000.0, within: Some(0.005), parts: 1, shows_progress: false };
+        let go_on = &mut |_: &Runs| ControlFlow::Continue(());
+        let (runs, ended) =
+            collect(vec![1.0, 1.0], 2, limits, (&run, &|_| Ok(false)), go_on).expect("a budget");
+        assert_eq!(ended, BudgetEnd::Within);
+        let starts = runs.all[0].len();
+        assert!((8..200).contains(&starts), "{starts} starts");
+    }
 }

@@ -8,7 +8,7 @@ use crate::RunResult;
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet, points};
 use crate::error::Result;
 use crate::scene::NewPile;
-use crate::statistics::{Mean, mean, p_value, slope};
+use crate::statistics::{Mean, mean, p_of_either, p_value, slope};
 
 /// What every claim about the slump of piles hangs on besides the cone.
 const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
@@ -163,7 +163,7 @@ fn minimum(states: &[Alike]) -> (String, Verdict) {
     let left = rise(|pairs| pairs[0].1);
     let right = rise(|pairs| pairs[pairs.len() - 1].1);
     let p = left.p_above(0.0).max(right.p_above(0.0));
-    let p_not = left.p_below(0.0).min(right.p_below(0.0));
+    let p_not = p_of_either(left.p_below(0.0), right.p_below(0.0));
     let measured = format!(
         "{}; {}; both above 0: {}",
         measured("smallest Δt above those between", &left),
@@ -255,7 +255,7 @@ fn loses(cohesive: &Rows<'_>) -> Claim {
     };
     let of_slump = with(&slumps);
     let p = falls.p_below(0.0).max(of_slump.p_below(0.0));
-    let p_not = falls.p_above(0.0).min(of_slump.p_above(0.0));
+    let p_not = p_of_either(falls.p_above(0.0), of_slump.p_above(0.0));
     let measured = format!(
         "at the largest Bond contacts change by {:+.1} a decade of Δt ({:+.1} … {:+.1}), and slump by {:+.4} a contact \
          within a state ({:+.4} … {:+.4}); both below 0: {}",

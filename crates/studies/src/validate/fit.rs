@@ -82,17 +82,21 @@ pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     (exponent, (y - exponent * x).exp())
 }
 
-/// Correlation of the ranks of two columns (C. Spearman 1904), without ties.
+/// Correlation of the ranks of two columns (C. Spearman 1904). Equal values share the mean of their ranks. Not a number
+/// where a value is none, or where all of a column are equal.
 pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
-    let rank = |of: fn(&(f64, f64)) -> f64, value: f64| {
-        pairs.iter().filter(|pair| of(pair) < value).count() as f64
+    // Twice the rank, from the middle of the column.
+    let ranks = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
+        let compare = |one: &(f64, f64), other: &(f64, f64)| {
+            of(one).partial_cmp(&of(other)).map_or(f64::NAN, |order| f64::from(order as i8))
+        };
+        pairs.iter().map(|one| pairs.iter().map(|other| compare(one, other)).sum()).collect()
     };
-    let count = pairs.len() as f64;
-    let squares: f64 = pairs
-        .iter()
-        .map(|pair| (rank(|pair| pair.0, pair.0) - rank(|pair| pair.1, pair.1)).powi(2))
-        .sum();
-    1.0 - 6.0 * squares / (count * (count * count - 1.0))
+    let (first, second) = (ranks(|pair| pair.0), ranks(|pair| pair.1));
+    let product = |one: &[f64], other: &[f64]| -> f64 {
+        one.iter().zip(other).map(|(one, other)| one * other).sum()
+    };
+    product(&first, &second) / (product(&first, &first) * product(&second, &second)).sqrt()
 }
 
 #[cfg(test)]
@@ -126,5 +130,10 @@ mod tests {
         assert_eq!(rank_correlation(&[(1.0, 9.0), (2.0, 7.0), (5.0, 1.0)]), -1.0);
         assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 7.0), (5.0, 9.0)]), 1.0);
         assert_eq!(rank_correlation(&[(1.0, 2.0), (2.0, 1.0), (3.0, 3.0)]), 0.5);
+        // Ranks 1 to 5 against 1, 2, 4, 4, 4: Pearson's coefficient of those is 8/√(10·8).
+        let tied = [(1.0, 1.0), (2.0, 2.0), (3.0, 9.0), (4.0, 9.0), (5.0, 9.0)];
+        assert!((rank_correlation(&tied) - 0.8f64.sqrt()).abs() < 1e-12);
+        assert!(rank_correlation(&tied.map(|(x, _)| (x, 9.0))).is_nan());
+        assert!(rank_correlation(&[(1.0, 1.0), (2.0, f64::NAN), (3.0, 2.0)]).is_nan());
     }
 }

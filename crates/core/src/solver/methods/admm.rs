@@ -14,7 +14,7 @@
 //! c the capture speed. The matrix stays while ε does, so an iteration is one pass over the contacts
 //! and one solve with factors at hand. Where it rests, V obeys the impulses and the impulses obey
 //! the law: the common natural map is 0. Penalty and law pull against each other; ε is changed where
-//! one of σ' − σ and (z' − z)/ε is much the larger.
+//! one of ε(σ' − σ) and (z' − z)/ε is much the larger.
 
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
 use super::stopping::{SolveReport, is_tested};
