@@ -17,10 +17,11 @@
 //! [`next_problem`](sim::Simulation::next_problem) to a [`sim::ProblemVisitor`], and solved by
 //! [`solver::solve`]. Three such programs are in `examples/`.
 //!
-//! Modules depend downward only: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`granular`] ← [`data`] ←
-//! [`scene`] ← [`render`], [`interchange`] ← the program, which is `study`, `headless`, the window (`app`, feature
-//! `window`) and `cli`; `tests/program/house.rs` checks it. The physics knows no screen. Without the feature `gpu`
-//! pictures are drawn by the processor alone. The same from Python is a package of its own, in `python/`.
+//! Each module uses those before it: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`], which are
+//! of the crate `slump-core`, ← [`granular`] ← [`data`] ← [`interchange`], [`config`], of `slump-data`, ← `study`, of
+//! `slump-studies`, ← [`render`] ← the program, which is `headless`, the window (`app`, feature `window`) and `cli`. The
+//! compiler sees to the order of the crates, nothing but care to that within one. The physics knows no screen. Without the
+//! feature `gpu` pictures are drawn by the processor alone. The same from Python is a package of its own, in `python/`.
 
 #![cfg_attr(
     target_arch = "wasm32",

@@ -25,7 +25,7 @@ class Solution:
     seconds: float
     """Time of the solve alone, s; the least of the repeats."""
     converged: bool
-    """Whether the method says that it got to its tolerance."""
+    """Whether the method got to its tolerance, by what it says and by the residual."""
     stalled: bool
     """Whether it did not because it had stalled: more sweeps are of no use."""
     residual: float

@@ -90,7 +90,7 @@ def test_options_change_a_run_that_goes_on(tmp_path: Path) -> None:
     other = slump.Simulation(restart=file, bond=50, stepper="range", duration=3.0)
     assert (other.bond, other.stepper, other.dt, other.duration, other.steps) == (50, "range", 1e-3, 3.0, 20)
     for start in [{"scene": "pile"}, {"initial": file}, {"initial": sim.grains}, {"grains": 30}, {"initial_step": 3}]:
-        with pytest.raises(slump.InputError, match="restart is given, but must be left out where scene, initial, grains"):
+        with pytest.raises(slump.InputError, match="restart is given, but must be left out where scene, initial, initial-step"):
             slump.Simulation(restart=file, **start)  # type: ignore[arg-type]
     with pytest.raises(slump.InputError, match="bond is -1, but must be"):
         slump.Simulation(restart=file, bond=-1)

@@ -15,7 +15,21 @@ const FIRST: [&str; 16] = [
 ];
 
 /// The options that a window has no use for.
-const HEADLESS: [&str; 5] = ["save", "checkpoint_every", "data", "data_every", "data_format"];
+const HEADLESS: [&str; 13] = [
+    "overwrite",
+    "fps",
+    "times",
+    "gif",
+    "video",
+    "video_speed",
+    "colour_scale",
+    "force_scale",
+    "save",
+    "checkpoint_every",
+    "data",
+    "data_every",
+    "data_format",
+];
 
 const EXAMPLES: &str = "Examples:
   slump --bond 20 --dt 5e-3                           # the window, with a cohesive pile
@@ -66,8 +80,13 @@ fn scene_first(run: Command) -> Command {
     run.mut_arg("scene", scene).mut_arg("headless", |arg| arg.hide(true)).after_help(RUN_EXAMPLES)
 }
 
-/// A command and those below it, each that takes a scene with its arguments as they are `told`.
+/// A command and those below it, each that takes a scene with its arguments as they are `told`. A negative number is a
+/// value everywhere, so that it is the option that says what is allowed.
 fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
+    let command = command.mut_args(|arg| match arg.get_action().takes_values() {
+        true => arg.allow_negative_numbers(true),
+        false => arg,
+    });
     let takes_scene = command.get_arguments().any(|arg| arg.get_id() == "scene");
     let command = if takes_scene { command.mut_args(told) } else { command };
     command.mut_subcommands(|below| tell(below, told))

@@ -18,7 +18,7 @@ use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use crate::output::{
     Progress, check_file, ignore_file_size_signal, lost_stdout, note_line, note_printed,
-    print_line, print_text, warn_of_steps, write_file,
+    print_line, print_text, resolved, warn_of_steps, write_file,
 };
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
 use crate::sim::Stepper;
@@ -56,7 +56,7 @@ enum CliCommand {
         #[arg(long, default_value_t = NewPile::default().grains)]
         grains: usize,
         /// Width of the box, in mean diameters
-        #[arg(long, default_value_t = NewPile::default().box_width_in_diameters, allow_negative_numbers = true)]
+        #[arg(long, default_value_t = NewPile::default().box_width_in_diameters)]
         box_width: f64,
         /// Seed of diameters and places
         #[arg(long, default_value_t = NewPile::default().seed)]
@@ -143,6 +143,7 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
 }
 
 /// Stack of the first thread that is enough for all commands: runs were seen to need more than 512 KiB and less than 768.
+/// A window that opens a session needs more than 2 MiB, which is no reason to refuse a run: 8 are usual where windows are.
 const LEAST_STACK_BYTES: u64 = 1 << 20;
 
 /// Refuses to begin where the stack would overflow, which no program survives.
@@ -199,7 +200,6 @@ fn run(cli: Cli) -> Result<()> {
     }
 }
 
-/// Prints the built-in scenes, the steppers, the methods and the models of friction.
 /// What there is to choose from.
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Listed {
@@ -286,7 +286,7 @@ enum ProblemCommand {
         #[command(flatten)]
         config: Box<Config>,
         /// Simulated time, seconds
-        #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+        #[arg(long, value_name = "SECONDS")]
         at: f64,
         /// The file to write (JSON)
         #[arg(long, value_name = "FILE")]
@@ -300,7 +300,7 @@ enum ProblemCommand {
         #[arg(long, value_name = "NAME", default_value = "nsgs", value_parser = parser_of::<Method>())]
         method: Method,
         /// Residual to reach
-        #[arg(long, value_name = "X", default_value_t = 1e-8, allow_negative_numbers = true)]
+        #[arg(long, value_name = "X", default_value_t = 1e-8)]
         tolerance: f64,
         /// Give up after this many sweeps
         #[arg(long, value_name = "N", default_value_t = 1_000_000)]
@@ -336,7 +336,14 @@ impl ProblemCommand {
                 Ok(())
             }
             Self::Solve { file, method, tolerance, max_sweeps, repeat, without_bodies, out } => {
-                out.as_deref().map(|out| check_file("out", out)).transpose()?;
+                if let Some(out) = &out {
+                    check_file("out", out)?;
+                    let place = resolved(out)?;
+                    if place.is_some() && place == resolved(&file)? {
+                        let allowed = "another file than that of the problem";
+                        return Err(Error::value("out", out.display(), allowed));
+                    }
+                }
                 let mut problem = ProblemFile::read(&file)?;
                 if without_bodies {
                     problem.bodies = None;

@@ -57,23 +57,13 @@ pub(super) enum StudyCommand {
         #[arg(long = "quantity", value_name = "X", help_heading = "Budget")]
         quantities: Vec<String>,
         /// Where the window of mean, min, max and total begins, simulated seconds [default: 0]
-        #[arg(
-            long = "from",
-            value_name = "SECONDS",
-            help_heading = "Budget",
-            allow_negative_numbers = true
-        )]
+        #[arg(long = "from", value_name = "SECONDS", help_heading = "Budget")]
         from_secs: Option<f64>,
         /// Where it ends, and runs with it [default: the scene's duration]
-        #[arg(
-            long = "to",
-            value_name = "SECONDS",
-            help_heading = "Budget",
-            allow_negative_numbers = true
-        )]
+        #[arg(long = "to", value_name = "SECONDS", help_heading = "Budget")]
         to_secs: Option<f64>,
         /// Half the width that every interval is to have, in the quantity's unit [default: a tenth of its value]
-        #[arg(long, value_name = "X", help_heading = "Budget", allow_negative_numbers = true)]
+        #[arg(long, value_name = "X", help_heading = "Budget")]
         within: Option<f64>,
         /// Time to take on all cores: 90s, 30min, 2h
         #[arg(long = "cost", value_name = "TIME", help_heading = "Budget", default_value = "5min", value_parser = secs_of)]
@@ -281,14 +271,15 @@ fn stability(
     progress.finish();
     let table = table?;
     print_text(&table);
+    // Before the maps, which take longest.
+    if let Some(path) = table_path {
+        write_file(path, &table.to_csv()?)?;
+        print_line(path.display());
+    }
     if let Some(folder) = out {
         write_file(&folder.join("table.csv"), &table.to_csv()?)?;
         draw_stability(&table, scenes, folder, quick)?;
         print_line(folder.display());
-    }
-    if let Some(path) = table_path {
-        write_file(path, &table.to_csv()?)?;
-        print_line(path.display());
     }
     Ok(())
 }

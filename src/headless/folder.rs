@@ -15,7 +15,7 @@ use crate::config::SavedState;
 use crate::error::{Error, Result};
 use crate::output::{
     FolderLock, Locked, check_recognised, check_writable, final_name, folder_of, is_recognised,
-    remove_if_there,
+    remove_if_there, resolved,
 };
 use crate::scene::Scene;
 use crate::sim::{ForceSums, Simulation, Tally};
@@ -144,15 +144,40 @@ fn files_of_a_run(folder: &Path, animation: Option<&str>) -> Result<Vec<String>>
         let name = entry.map_err(refuse)?.file_name();
         let name = name.to_string_lossy();
         let whole = final_name(&name);
-        let is_ours = is_frame(whole)
-            || animation == Some(whole)
-            || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&whole);
+        let is_ours = is_of_every_run(whole) || animation == Some(whole);
         if is_ours && is_plain(&folder.join(&*name)) {
             names.push(name.into_owned());
         }
     }
     names.sort();
     Ok(names)
+}
+
+fn is_of_every_run(name: &str) -> bool {
+    is_frame(name) || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&name)
+}
+
+/// Refuses places of one command, each with its option, that are one and the same, or that of a file which the run
+/// writes in its folder.
+///
+/// # Errors
+/// Names the option of the first.
+pub(super) fn check_apart(places: &[(&str, &Path)], folder: Option<&Path>) -> Result<()> {
+    let folder = folder.map(|folder| folder.canonicalize().unwrap_or_else(|_| folder.to_owned()));
+    let mut taken: Vec<(&str, PathBuf)> = Vec::new();
+    for &(option, path) in places {
+        let Some(place) = resolved(path)? else { continue };
+        let refuse = |allowed: &str| Err(Error::value(option, path.display(), allowed));
+        if let Some((other, _)) = taken.iter().find(|(_, there)| *there == place) {
+            return refuse(&format!("another path than that of {other}"));
+        }
+        let name = place.file_name().and_then(|name| name.to_str());
+        if place.parent() == folder.as_deref() && name.is_some_and(is_of_every_run) {
+            return refuse("a file that the run does not write itself in the folder of frames");
+        }
+        taken.push((option, place));
+    }
+    Ok(())
 }
 
 fn is_frame(name: &str) -> bool {
@@ -203,7 +228,9 @@ pub(super) struct Marks {
     pub restarted_from: Option<Instant>,
     /// Moments at which the same command went on; none in one that has just begun.
     pub went_on_at: Vec<Instant>,
-    /// What pairs have transmitted since the last frame of the recording.
+    /// Frames of the recording.
+    pub frames: u64,
+    /// What pairs have transmitted since the last of them.
     pub sums: ForceSums,
 }
 

@@ -17,7 +17,7 @@ pub(crate) use {waiting::WaitingStates, writer::recording_sentence};
 use std::path::Path;
 
 use crate::config::Config;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::output::heed_signals;
 use folder::EarlierFiles;
 
@@ -32,19 +32,6 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
 /// figures.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
-    let asks_for_files = options.draws() || options.save.is_some();
-    let asks_for_data = || -> Result<bool> {
-        let of_scene = || Ok(config.without_settling()?.data.is_some_and(|it| it.folder.is_some()));
-        if options.data.is_some() { Ok(true) } else { of_scene() }
-    };
-    if !asks_for_files && !asks_for_data()? {
-        let allowed =
-            "a folder (--frames out/), or give --gif FILE, --video FILE, --data DIR or --save FILE";
-        return Err(Error::value("frames", "missing", allowed));
-    }
-    if options.overwrite && options.frames.is_none() && options.data.is_none() {
-        return Err(Error::value("overwrite", "given", "given with --frames DIR or --data DIR"));
-    }
     heed_signals();
     let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };
     match &options.frames {

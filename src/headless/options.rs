@@ -60,10 +60,10 @@ pub(crate) struct HeadlessOptions {
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
     /// Pictures per simulated second: frame_00000.png and so on [default: 25]
-    #[arg(long, value_name = "N", conflicts_with = "times", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", conflicts_with = "times")]
     pub fps: Option<f64>,
     /// Pictures at these simulated times, seconds; the last ends the run unless --duration is given
-    #[arg(long, value_name = "T1,T2", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "T1,T2", value_delimiter = ',', allow_hyphen_values = true)]
     pub times: Vec<f64>,
     /// Write the pictures as an animation too, 25 a second
     #[arg(long, value_name = "FILE")]
@@ -73,7 +73,7 @@ pub(crate) struct HeadlessOptions {
     pub video: Option<PathBuf>,
     /// Simulated seconds in a second of the video: 0.1 is ten times slower than it was, and asks for 250 pictures
     /// per simulated second unless --fps says otherwise [default: 1]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N")]
     pub video_speed: Option<f64>,
     /// What to lay over the grains
     #[arg(long, value_name = "WHAT", value_delimiter = ',')]
@@ -87,12 +87,12 @@ pub(crate) struct HeadlessOptions {
         long,
         value_name = "LOW,HIGH",
         value_delimiter = ',',
-        allow_negative_numbers = true,
+        allow_hyphen_values = true,
         alias = "color-scale"
     )]
     pub colour_scale: Vec<f64>,
     /// Force of the widest link, N: the same for --show forces
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N")]
     pub force_scale: Option<f64>,
     /// Ground and ink
     #[arg(long, value_name = "THEME")]
@@ -107,19 +107,13 @@ pub(crate) struct HeadlessOptions {
     #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
     pub save: Option<PathBuf>,
     /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        help_heading = "Saved runs",
-        requires = "frames",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "SECONDS", help_heading = "Saved runs", requires = "frames")]
     pub checkpoint_every: Option<f64>,
     /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
     #[arg(long, value_name = "DIR", help_heading = "Data")]
     pub data: Option<PathBuf>,
     /// Simulated time between its moments, seconds [default: the times of the pictures]
-    #[arg(long, value_name = "SECONDS", help_heading = "Data", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", help_heading = "Data")]
     pub data_every: Option<f64>,
     /// What it is written as [default: parquet]
     #[arg(
@@ -148,6 +142,30 @@ impl HeadlessOptions {
 
     pub(super) fn draws(&self) -> bool {
         self.frames.is_some() || self.animation().is_some()
+    }
+
+    /// The files that are asked for one by one, each with its option.
+    pub(super) fn files(&self) -> Vec<(&'static str, &Path)> {
+        let files = [("gif", &self.gif), ("video", &self.video), ("save", &self.save)];
+        files.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))).collect()
+    }
+
+    /// Fails where nothing is to be written, or there is no folder to overwrite; `has_data` says whether a recording is
+    /// asked for.
+    pub(super) fn check_places(&self, has_data: bool) -> Result<()> {
+        if !self.draws() && self.save.is_none() && !has_data {
+            let allowed = "a folder (--frames out/), or give --gif FILE, --video FILE, --data DIR or \
+                           --save FILE";
+            return Err(Error::value("frames", "missing", allowed));
+        }
+        if self.overwrite && self.frames.is_none() && !has_data {
+            return Err(Error::value(
+                "overwrite",
+                "given",
+                "given with --frames DIR or --data DIR",
+            ));
+        }
+        Ok(())
     }
 
     /// A file that moves, if there is to be one.

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::HeadlessOptions;
-use super::folder::{Beginning, Checkpoints, EarlierFiles, Marks, RunFolder, look};
+use super::folder::{Beginning, Checkpoints, EarlierFiles, Marks, RunFolder, check_apart, look};
 use super::manifest::Instant;
 use super::writer::{RunWriter, interrupted};
 use crate::config::{Config, SavedState, scene_facts};
@@ -28,6 +28,7 @@ pub(super) fn draw(
     let asked = RequestedRun::of(config, options)?;
     let PictureSchedule { times_secs, until_secs } = asked.schedule(config, options)?;
     let data = options.data_settings(asked.scene())?;
+    options.check_places(data.is_some())?;
     let choice = if options.draws() { options.renderer } else { RendererChoice::Cpu };
     let renderer = Renderer::new(choice)?;
     renderer.check_size(size.width, size.height)?;
@@ -36,10 +37,11 @@ pub(super) fn draw(
     let every_secs = options.checkpoint_every;
     let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
     let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
-    let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.save)];
-    for (option, path) in files {
-        path.as_deref().map(|path| check_file(option, path)).transpose()?;
-    }
+    let mut places = options.files();
+    places.iter().try_for_each(|(option, path)| check_file(option, path))?;
+    // The folder of pictures may be the same.
+    places.extend(data.as_ref().map(|(folder, _)| ("data", &**folder)));
+    check_apart(&places, options.frames.as_deref())?;
     let picture_times_secs = options.picture_times(asked.scene().duration_secs)?;
     let claim = |data| RecordingPlan::claim(data, options.overwrite, found.is_some());
     let recording = data.map(claim).transpose()?;
@@ -77,7 +79,7 @@ pub(super) fn draw(
         checkpoints.write(&scene, &simulation, &tally, marks.clone())?;
     }
     let start = |plan: RecordingPlan| -> Result<Recording> {
-        let recording = plan.start(&scene, &simulation, &picture_times_secs)?;
+        let recording = plan.start(&scene, &simulation, &picture_times_secs, marks.frames)?;
         Ok(recording.with_sums(marks.sums.clone()))
     };
     let recording = recording.map(start).transpose()?;
@@ -268,15 +270,16 @@ impl RecordingPlan {
         Ok(Self { claim, folder, settings })
     }
 
-    /// Starts it, or goes on with it, at the present state of a run.
+    /// Starts it, or goes on with its `frames`, at the present state of a run.
     ///
     /// # Errors
-    /// Where the folder cannot be written to.
+    /// Where the folder cannot be written to, or lacks one of them.
     pub(super) fn start(
         self,
         scene: &Scene,
         simulation: &Simulation,
         picture_times: &[f64],
+        frames: u64,
     ) -> Result<Recording> {
         let mut about = scene_facts(scene)?;
         let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
@@ -296,7 +299,7 @@ impl RecordingPlan {
         let step = simulation.observables().step;
         let recording = match self.claim {
             Some(claim) => Recording::start_in(claim, &formats, &about)?,
-            None => Recording::go_on(&self.folder, &formats, &about, step)?,
+            None => Recording::go_on(&self.folder, &formats, &about, step, frames)?,
         };
         Ok(recording.at(times, simulation))
     }

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    /// GpuKind of driver and name of the device.
+    /// Kind of driver and name of the device.
     pub name: String,
     /// Message of the first failure that no call reported directly.
     failure: Arc<Mutex<Option<String>>>,

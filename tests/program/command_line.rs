@@ -57,6 +57,27 @@ fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
 }
 
 #[test]
+fn a_negative_number_is_a_value_of_every_option() {
+    let folder = folder();
+    let headless = "--headless --scene cradle --times 0 --size 64x36 --renderer cpu --frames out";
+    for (line, field, value) in [
+        ("run pile --frames out --grains", "grains", "-5"),
+        ("run pile --frames out --seed", "seed", "-1"),
+        ("run pile --frames out --initial-step", "initial-step", "-1"),
+        ("run pile --frames out --max-sweeps", "max-sweeps", "-1"),
+        ("generate --out a.csv --grains", "grains", "-5"),
+        ("problem solve a.json --repeat", "repeat", "-1"),
+        ("run pile --frames out --times", "times", "-1,0"),
+    ] {
+        let said = sentence(slump(line).arg(value).current_dir(folder.path()));
+        let named = [format!("{field} is {value}"), format!("{field} is -1, but must be between")];
+        assert!(named.iter().any(|it| said.contains(it)), "{line} {value}: {said}");
+    }
+    let ends = ["--colour", "speed", "--colour-scale", "-1,1"];
+    succeed(slump(headless).args(ends).current_dir(folder.path()));
+}
+
+#[test]
 fn an_unknown_challenge_is_told_of_with_those_there_are() {
     let said = refusal(&["stability", "heap"]);
     assert!(said.contains("scene is heap, but must be one of column, sag, mass-ratio"), "{said}");
@@ -269,8 +290,20 @@ fn run_is_headless_with_the_scene_as_a_word() {
         assert!(said.contains(named), "{line}: {said}");
     }
     // A window has no use for these, and says so.
-    let said = refusal(&["--scene", "pile", "--data", "out"]);
-    assert!(said.contains("--headless"), "{said}");
+    for line in [
+        "--data out",
+        "--gif a.gif",
+        "--video a.mp4",
+        "--video-speed 2",
+        "--times 0",
+        "--fps 5",
+        "--overwrite",
+        "--colour-scale 0,1",
+        "--force-scale 1",
+    ] {
+        let said = sentence(slump("--scene pile").args(line.split(' ')).env_remove("DISPLAY"));
+        assert!(said.contains("--headless is missing"), "{line}: {said}");
+    }
 }
 
 #[test]

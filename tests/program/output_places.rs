@@ -153,6 +153,70 @@ fn where_nothing_can_be_written_is_told_before_the_work() {
 }
 
 #[test]
+fn outputs_that_would_take_each_others_place_are_refused_before_the_work() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    std::fs::create_dir(&out).expect("a folder");
+    std::os::unix::fs::symlink("out", folder.path().join("link")).expect("a link");
+    let line = "run cradle --duration 0.02 --size 64x36 --renderer cpu";
+    let with = |files: &[[&str; 2]]| {
+        let mut command = slump(line);
+        command.current_dir(folder.path()).args(files.as_flattened());
+        command
+    };
+    for (files, reason) in [
+        ([["--gif", "out/a"], ["--save", "out/a"]], "save is out/a, but must be another path than"),
+        ([["--gif", "out/a"], ["--save", "link/../link/a"]], "save is link/../link/a, but must be"),
+        (
+            [["--data", "out/a"], ["--save", "out/a"]],
+            "data is out/a, but must be another path than",
+        ),
+        ([["--frames", "out"], ["--save", "link/checkpoint.slump"]], "does not write itself"),
+        ([["--frames", "out"], ["--gif", "out/manifest.json"]], "does not write itself"),
+        ([["--frames", "out"], ["--gif", "out/frame_00000.png"]], "does not write itself"),
+    ] {
+        let said = sentence(&mut with(&files));
+        assert!(said.contains(reason), "{files:?}: {said}");
+        assert_eq!(names_in(&out), [""; 0], "{files:?}");
+    }
+    succeed(&mut with(&[["--frames", "out"], ["--gif", "out/a"], ["--save", "manifest.json"]]));
+    succeed(&mut with(&[["--gif", "/dev/null"], ["--save", "/dev/null"]]));
+
+    let problem = folder.path().join("problem.json");
+    std::fs::copy(PROBLEM, &problem).expect("a problem");
+    let mut solve = slump("problem solve problem.json --out out/../problem.json");
+    let said = sentence(solve.current_dir(folder.path()));
+    assert!(said.contains("must be another file than that of the problem"), "{said}");
+    assert_eq!(bytes(&problem), bytes(PROBLEM));
+}
+
+#[test]
+fn any_name_that_a_file_can_have_is_written_and_longer_ones_are_told_before_the_work() {
+    let folder = folder();
+    for (letter, times) in [("n", 255), ("é", 127)] {
+        let name = letter.repeat(times);
+        assert!(solve_to(&folder.path().join(&name)).status.success(), "{name}");
+        assert_eq!(names_in(folder.path()), [name.as_str()]);
+        std::fs::remove_file(folder.path().join(&name)).expect("a file");
+    }
+    let work = ["problem", "solve", PROBLEM, "--repeat", "1000000", "--out"];
+    let output = at_once(&work, &folder.path().join("n".repeat(256)));
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("must be a name that a file can have (File name too long"), "{said}");
+}
+
+#[test]
+fn a_table_that_is_asked_for_is_there_whatever_becomes_of_the_pictures() {
+    let folder = folder();
+    let (table, out) = (folder.path().join("t.csv"), folder.path().join("out"));
+    std::fs::create_dir_all(out.join("table.png")).expect("a folder where a picture is to be");
+    let mut command = slump("stability thin-wall --quick --table");
+    failure(command.arg(&table).arg("--out").arg(&out));
+    assert!(read(&table).lines().count() > 1);
+}
+
+#[test]
 fn a_full_or_closed_stdout_is_no_panic() {
     let printing: [&[&str]; 5] = [
         &["--help"],

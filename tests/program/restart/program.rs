@@ -116,6 +116,11 @@ fn a_saved_run_goes_on_otherwise_where_it_is_asked_to() {
         (&["--times", "0.01", "--duration", "0.2"], "times is 0.01"),
         (&["--scene", "cradle", "--duration", "0.2"], "restart is given"),
         (&["--preset", "robust", "--duration", "0.2"], "restart is given"),
+        (
+            &["--base-width", "20"],
+            "grains, box-width, base-width, seed, deposition, start or preset",
+        ),
+        (&["--initial-step", "1"], "left out where scene, initial, initial-step, grains"),
         (&["--bond", "-1", "--duration", "0.2"], "bond is -1"),
         (&["--checkpoint-every", "0", "--duration", "0.2"], "checkpoint-every is 0"),
         (
@@ -158,6 +163,8 @@ fn a_saved_run_is_an_initial_state_in_its_own_scene() {
     );
     assert_eq!(after.simulation.parameters().bond, 5.0);
 
+    let said = refusal(saved(&next, &initial).args(["0.1", "--initial-step", "1"]));
+    assert!(said.contains("initial-step is 1, but must be left out"), "{said}");
     let said = refusal(saved(&next, &initial).args(["0.1", "--scene", "cradle"]));
     assert!(said.contains("scene is cradle") && said.contains("moving-walls"), "{said}");
     let mut bytes = bytes(&state);

@@ -86,6 +86,19 @@ fn walls_are_named_as_scene_files_name_them() {
 }
 
 #[test]
+fn rows_of_text_have_a_field_for_each_name_where_a_wall_has_several_parts() {
+    let folder = folder();
+    let formats = [FormatName::Parquet, FormatName::Csv];
+    recorded(folder.path(), &formats, &scene("drum"), 4, 2);
+    for table in ["grains", "contacts", "pairs", "walls", "steps", "measures", "histograms"] {
+        let found = parquet(folder.path(), table);
+        assert_same(&csv(&folder.path().join(format!("csv/{table}.csv")), &found), &found, table);
+    }
+    let names = &parquet(folder.path(), "walls")["name"];
+    assert!(names.contains(&word("polyline 0, 72 fixed discs")), "the situation: {names:?}");
+}
+
+#[test]
 fn lost_grains_say_so_and_stay() {
     // Faster than a wall can be seen at such a step.
     let mut thin = scene("thin-wall");

@@ -105,6 +105,14 @@ fn scene_files_ask_for_recordings() {
     let out = folder.path().join("out");
     assert_eq!(frames(&out), [0, 20, 40, 60, 80, 100]);
     assert!(out.join("csv/grains.csv").exists());
+    let again = |more: &[&str]| {
+        let mut command = slump("--headless --dt 1e-3 --scene");
+        command.arg(&scene).args(more);
+        command
+    };
+    let said = sentence(&mut again(&[]));
+    assert!(said.contains("unless --overwrite is given"), "{said}");
+    succeed(&mut again(&["--overwrite"]));
     // The command line goes first.
     let other = folder.path().join("other");
     let line = "--headless --dt 1e-3 --data-every 0.05 --data-format parquet --scene";

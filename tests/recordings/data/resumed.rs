@@ -53,7 +53,8 @@ fn what_goes_on_is_what_was_never_stopped() {
         drop(recording);
         let mut simulation = saved;
         let about = slump::config::scene_facts(&pile).expect("facts");
-        let recording = Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
+        let recording = Recording::go_on(&path, &formats, &about, stopped_at, stopped_at / 2)
+            .expect("it goes on");
         let mut recording = recording.with_sums(sums);
         assert_eq!(recording.frames(), stopped_at / 2);
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
@@ -84,11 +85,29 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     simulation.step().expect("a finite state");
     sums.follow(&simulation);
     let about = slump::config::scene_facts(&pile).expect("facts");
-    let recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
+    let recording = Recording::go_on(&torn, &formats, &about, 25, 0).expect("it goes on");
     let mut recording = recording.with_sums(sums);
     record(&mut recording, &mut simulation, 15, 2);
     recording.finish().expect("a recording");
     assert_same_files(&torn, &expected, "mended");
+}
+
+#[test]
+fn a_recording_that_lacks_frames_of_its_run_is_refused_and_keeps_what_it_has() {
+    let pile = scene("pile");
+    let folder = folder();
+    let formats = [FormatName::Csv];
+    recorded(folder.path(), &formats, &pile, 30, 2);
+    let [index, grains] = ["frames.csv", "csv/grains.csv"].map(|file| folder.path().join(file));
+    let text = read(&index);
+    let end = text.trim_end().rmatch_indices('\n').nth(2).expect("more than three rows").0;
+    write(&index, &text[..=end]);
+    let before = bytes(&grains);
+    let about = slump::config::scene_facts(&pile).expect("facts");
+    let there = Recording::go_on(folder.path(), &formats, &about, 30, 15);
+    let said = there.map(|_| ()).expect_err("three frames are missing").to_string();
+    assert!(said.contains("frames of the recording is 12, but must be all 15"), "{said}");
+    assert_eq!(bytes(&grains), before);
 }
 
 #[test]
@@ -108,7 +127,7 @@ fn frames_that_are_there_are_not_made_again() {
     }
     assert_eq!(recording.frames(), 4);
     recording.finish().expect("a recording");
-    let recording = Recording::go_on(folder.path(), &formats, &about, 7).expect("it goes on");
+    let recording = Recording::go_on(folder.path(), &formats, &about, 7, 0).expect("it goes on");
     let mut recording = recording.at(Times::Every(0.002), &simulation);
     // As a run that goes on asks before its first step.
     recording.add_if_due(&simulation).expect("a frame");
@@ -134,7 +153,7 @@ fn one_recording_at_a_time_in_a_folder() {
         let said = second.err().expect("a refusal").to_string();
         assert!(said.contains("is being written by another run"), "{said}");
     }
-    let second = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 0);
+    let second = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 0, 0);
     assert!(second.is_err_and(|error| error.to_string().contains("another run")));
     first.finish().expect("a recording");
     let second = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
@@ -175,14 +194,14 @@ fn a_recording_goes_on_in_its_own_formats_alone() {
     let folder = folder();
     recorded(folder.path(), &[FormatName::Csv], &scene("pile"), 8, 2);
     let about = RunFacts::default();
-    let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4);
+    let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4, 0);
     let said = other.err().expect("a refusal").to_string();
     assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");
     // What is no table of this version is not gone on with, nor touched.
     let table = folder.path().join("csv/contacts.csv");
     let text = read(&table).replace("normal_force", "force");
     write(&table, &text);
-    let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4);
+    let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4, 0);
     let said = changed.err().expect("a refusal").to_string();
     assert!(said.contains("contacts.csv: line ") && said.contains("normal_force"), "{said}");
     assert_eq!(read(&table), text);

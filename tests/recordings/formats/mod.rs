@@ -105,7 +105,7 @@ fn start(folder: &Path) -> Recording {
 }
 
 fn go_on(folder: &Path, step: u64) -> Recording {
-    Recording::go_on(folder, FORMATS, &about(), step).expect("a recording to go on with")
+    Recording::go_on(folder, FORMATS, &about(), step, 0).expect("a recording to go on with")
 }
 
 /// Writes frames of the numbers, each of the step ten times as high.

@@ -104,7 +104,7 @@ impl Feature {
         }
         let segments = || points.windows(2).map(|ends| Segment::new(ends[0], ends[1]));
         let closes = points.first() == points.last();
-        let mut before = segments().last().filter(|_| closes);
+        let mut before = segments().next_back().filter(|_| closes);
         for (index, shape) in segments().enumerate() {
             let has_next = closes || index + 2 < points.len();
             features.push(Feature::Segment { shape, before, has_next });

@@ -93,7 +93,6 @@ fn option(about: &About) -> Arg {
         .value_name(about.value_name)
         .help(about.help)
         .help_heading(about.heading)
-        .allow_negative_numbers(about.kind == Kind::Number)
         .ignore_case(true)
         .value_parser(parser);
     let option = match about.kind {

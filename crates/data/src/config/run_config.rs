@@ -56,11 +56,11 @@ pub struct SceneSource {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grains: Option<usize>,
     /// Width of the box that a new pile is made in, in mean diameters
-    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub box_width: Option<f64>,
     /// Width of the rough base under a pile, in mean diameters [default: five heights beyond the box on either side]
-    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_width: Option<f64>,
     /// Seed of a new pile
@@ -72,7 +72,7 @@ pub struct SceneSource {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deposition: Option<Deposition>,
     /// Where the cradle's k starts, in diameters left of i, centre to centre
-    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
     /// Settings that go together; what else is given changes them
@@ -80,7 +80,7 @@ pub struct SceneSource {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<Preset>,
     /// Simulated time, seconds
-    #[arg(long, value_name = "SECONDS", help_heading = "Scene", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub duration: Option<f64>,
 }
@@ -398,6 +398,11 @@ impl Config {
 
     /// The scene of a saved state, which begins with the state's grains.
     fn scene_of_state(&self, path: &Path) -> Result<Scene> {
+        if let Some(step) = self.source.initial_step {
+            let allowed =
+                "left out where the initial state is a saved run, which has one step alone";
+            return Err(Error::value("initial-step", step, allowed));
+        }
         let scene = SavedState::open(path)?.as_start();
         match &self.source.scene {
             // A file's scene may be called as a challenge is.
@@ -418,8 +423,8 @@ impl Config {
     pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
         let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
         if self.source != kept {
-            let allowed = "left out where scene, initial, grains, box-width, seed, start or preset is \
-                           given: a run that goes on has its own";
+            let allowed = "left out where scene, initial, initial-step, grains, box-width, base-width, \
+                           seed, deposition, start or preset is given: a run that goes on has its own";
             return Err(Error::value("restart", "given", allowed));
         }
         let mut scene = state.scene.clone();

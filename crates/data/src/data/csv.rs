@@ -200,10 +200,19 @@ fn write_rows(text: &mut Vec<u8>, table: &Table) {
                     text.extend_from_slice(said.as_bytes());
                 }
                 Values::Words { words, codes } => {
-                    text.extend_from_slice(words[codes[row] as usize].as_bytes());
+                    write_word(text, &words[codes[row] as usize]);
                 }
             }
         }
         text.push(b'\n');
+    }
+}
+
+/// A word as one field: what has commas or quotes of its own is put in quotes (RFC 4180).
+fn write_word(text: &mut Vec<u8>, word: &str) {
+    if word.contains([',', '"']) {
+        let _ = write!(text, "\"{}\"", word.replace('"', "\"\""));
+    } else {
+        text.extend_from_slice(word.as_bytes());
     }
 }

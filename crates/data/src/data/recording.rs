@@ -96,20 +96,21 @@ impl Recording {
     }
 
     /// Goes on with the recording in a folder, for a run that goes on from a step: what was recorded after
-    /// it is dropped. Without a recording there one is started.
+    /// it is dropped. Without a recording there one is started. By then it had `frames`.
     ///
     /// # Errors
-    /// As [`Recording::start`], and where a file there is not what this version writes.
+    /// As [`Recording::start`], and where a file there is not what this version writes, or frames are missing.
     pub fn go_on(
         folder: &Path,
         formats: &[FormatName],
         facts: &RunFacts,
         step: u64,
+        frames: u64,
     ) -> Result<Self> {
         let folder = RecordingFolder::to_go_on(folder)?;
         check_manifest(folder.path(), formats)?;
         let mut writer = FormatsWriter::start(folder.path(), formats, facts)?;
-        let kept = writer.roll_back(step)?;
+        let kept = writer.roll_back(step, frames)?;
         write_manifest(folder.path(), formats, facts)?;
         Self::with(folder, writer, kept.rows, kept.step)
     }
@@ -287,8 +288,13 @@ impl FormatsWriter {
     }
 
     /// Drops what was recorded after a step, and frames that not every format has.
-    fn roll_back(&mut self, step: u64) -> Result<KeptRows> {
+    fn roll_back(&mut self, step: u64, frames: u64) -> Result<KeptRows> {
         let kept = self.index.roll_back(Some(step))?;
+        if kept.rows < frames {
+            let allowed =
+                format!("all {frames} that it had when the run was saved; --overwrite begins anew");
+            return Err(Error::value("frames of the recording", kept.rows, allowed));
+        }
         let mut formats = self.formats.iter_mut();
         formats.try_for_each(|format| format.roll_back(step, kept.step))?;
         Ok(kept)

@@ -1,9 +1,13 @@
 //! Files that are whole or not there, where they go, what they say of themselves, and folders in which one run
 //! writes at a time.
 
-use std::ffi::OsString;
+use std::borrow::Cow;
+use std::ffi::OsStr;
 use std::fs::{File, Metadata, OpenOptions, Permissions, TryLockError};
-use std::io::{ErrorKind::NotFound, Seek, Write};
+use std::io::{
+    ErrorKind::{InvalidFilename, NotFound},
+    Seek, Write,
+};
 use std::path::{Path, PathBuf};
 
 use super::terminal::note_line;
@@ -36,6 +40,10 @@ pub fn nameless_file(_: &Path) -> std::io::Result<DraftFile> {
 
 /// Ending of the name that a file has until it is whole.
 const ENDING_OF_DRAFT: &str = ".part";
+/// Bytes of a name that the file systems in use all take, without what a draft has besides: `.` in front, and `.`, six
+/// letters and the ending behind.
+#[cfg(not(target_arch = "wasm32"))]
+const MOST_OF_NAME: usize = 255 - 8 - ENDING_OF_DRAFT.len();
 /// Links that lead on to links; more than the system itself follows are a circle.
 const MOST_LINKS: usize = 40;
 
@@ -112,8 +120,8 @@ impl PendingFile {
     #[cfg(not(target_arch = "wasm32"))]
     fn put(&mut self, safe: bool) -> std::io::Result<()> {
         let Destination { path, permissions, .. } = &self.destination;
-        let mut prefix = OsString::from(".");
-        prefix.extend([path.file_name().unwrap_or_default(), ".".as_ref()]);
+        let name = shortened(path.file_name().unwrap_or_default());
+        let prefix = [".".as_ref(), &*name, ".".as_ref()].join(OsStr::new(""));
         // With the permissions that the umask leaves to any new file.
         let mut draft = tempfile::Builder::new()
             .prefix(&prefix)
@@ -130,6 +138,16 @@ impl PendingFile {
         draft.persist(path)?;
         Ok(())
     }
+}
+
+/// As much of a name as a draft's has room for.
+#[cfg(not(target_arch = "wasm32"))]
+fn shortened(name: &OsStr) -> Cow<'_, OsStr> {
+    if name.len() <= MOST_OF_NAME {
+        return Cow::Borrowed(name);
+    }
+    let text = name.to_string_lossy();
+    Cow::Owned(text[..text.floor_char_boundary(MOST_OF_NAME)].into())
 }
 
 /// The folder that a file is in.
@@ -200,14 +218,30 @@ pub fn check_file(field: &str, path: &Path) -> Result<()> {
     if destination.is_special {
         return Ok(());
     }
-    if destination.path.is_dir() {
-        return refuse("a file, and this is a folder");
+    match destination.path.symlink_metadata() {
+        Ok(there) if there.is_dir() => return refuse("a file, and this is a folder"),
+        Err(error) if error.kind() == InvalidFilename => {
+            return refuse(&format!("a name that a file can have ({error})"));
+        }
+        _ => {}
     }
     if destination.permissions.is_some_and(|permissions| permissions.readonly()) {
         return refuse("a file that can be written to, and this one is read-only");
     }
     try_to_write(folder_of(&destination.path))
         .or_else(|error| refuse(&format!("a file in a folder that can be written to ({error})")))
+}
+
+/// Where the file is that a path leads to, by the one name that its folder has: files that take each other's place have
+/// the same. None where it is a device or a pipe, which takes all that comes.
+///
+/// # Errors
+/// Where a link leads back to itself.
+pub fn resolved(path: &Path) -> Result<Option<PathBuf>> {
+    let Destination { path, is_special, .. } = Destination::of(path)?;
+    // Where there is no folder, there is no file.
+    let folder = folder_of(&path).canonicalize().unwrap_or_else(|_| folder_of(&path).to_owned());
+    Ok((!is_special).then(|| folder.join(path.file_name().unwrap_or_default())))
 }
 
 fn try_to_write(folder: &Path) -> std::io::Result<()> {

@@ -97,7 +97,7 @@ impl GrowingFile {
     /// # Errors
     /// Names the file and what the system says; then it has nothing of them.
     pub(crate) fn add_at_once(&mut self, draft: &str, head: &str, rows: &str) -> Result<()> {
-        let below_draft = format!("{draft:0$}\n{rows}", head.len().saturating_sub(1));
+        let below_draft = below_draft(draft, head, rows);
         let written = self
             .put(0, below_draft.as_bytes())
             .and_then(|()| self.put_from_its_end(head.as_bytes()));
@@ -158,6 +158,12 @@ impl GrowingFile {
     }
 }
 
+/// Rows below a line of draft that is as long as the head. The padding of `format!` ends at 65,535 characters.
+fn below_draft(draft: &str, head: &str, rows: &str) -> String {
+    let room = head.len().saturating_sub(draft.len() + 1);
+    format!("{draft}{}\n{rows}", " ".repeat(room))
+}
+
 /// Where the last row ends that does.
 pub fn end_of_last(rows: &[u8]) -> Option<usize> {
     rows.iter().rposition(|&byte| byte == b'\n').map(|last| last + 1)
@@ -176,8 +182,7 @@ mod tests {
         for before in PAGE - 40..=PAGE {
             let mut file = GrowingFile::start(folder.path().join("rows")).expect("a file");
             file.add(("x".repeat(before as usize - 1) + "\n").as_bytes()).expect("rows");
-            let below = format!("{draft:0$}\n{rows}", head.len() - 1);
-            file.put(0, below.as_bytes()).expect("a draft");
+            file.put(0, below_draft(draft, head, rows).as_bytes()).expect("a draft");
             let pages = file.pages_from_the_last(head.len());
             over_an_end += usize::from(pages.len() == 2);
             for part in pages {
@@ -196,6 +201,16 @@ mod tests {
             }
         }
         assert!(over_an_end > 30, "the situation: {over_an_end}");
+    }
+
+    #[test]
+    fn a_head_may_be_longer_than_format_pads() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut file = GrowingFile::start(folder.path().join("rows")).expect("a file");
+        let head = "ITEM: ATOMS ".to_owned() + &"id ".repeat(30_000) + "\n";
+        file.add_at_once("ITEM: DRAFT", &head, "1 2\n").expect("a head and a row");
+        let text = std::fs::read_to_string(file.path()).expect("text");
+        assert!(text == head + "1 2\n", "{:.40}", text);
     }
 
     #[test]

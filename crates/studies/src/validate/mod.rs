@@ -76,18 +76,13 @@ pub struct ValidateOptions {
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
     pub methods: Vec<Method>,
     /// Time steps, seconds [default: 1e-3]
-    #[arg(
-        long = "time-steps",
-        value_name = "SECONDS",
-        value_delimiter = ',',
-        allow_negative_numbers = true
-    )]
+    #[arg(long = "time-steps", value_name = "SECONDS", value_delimiter = ',')]
     pub time_steps_secs: Vec<f64>,
     /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either; none by auto]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     pub sweeps: Vec<u32>,
     /// Efforts: residuals that a step is solved to, within 1,000 sweeps
-    #[arg(long, value_name = "X", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_delimiter = ',')]
     pub tolerances: Vec<f64>,
 }
 

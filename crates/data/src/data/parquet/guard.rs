@@ -5,12 +5,13 @@
 //! (apache/parquet-format, parquet.thrift).
 
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
 use crate::input::MOST_BYTES;
 
-/// Structures within structures, of which a file needs six.
+/// Structures and lists within each other, of which a file needs eight.
 const MOST_DEPTH: usize = 16;
 /// Snappy writes 64 bytes as three, at best.
 const MOST_EXPANSION: i64 = 32;
@@ -168,11 +169,13 @@ impl FieldShape {
             | (Switch, FieldValue::Switch)
             | (Plain, FieldValue::Other) => true,
             (List(shape), FieldValue::List(items)) => items.iter().all(|item| shape.fits(item)),
-            (Fields(shapes), FieldValue::Fields(fields)) => fields.iter().all(|(id, value)| {
-                let shape = shapes.iter().find(|(known, _)| known == id);
-                let is_single = fields.iter().filter(|(other, _)| other == id).count() == 1;
-                is_single && shape.is_none_or(|(_, shape)| shape.fits(value))
-            }),
+            (Fields(shapes), FieldValue::Fields(fields)) => {
+                let mut seen = BTreeSet::new();
+                fields.iter().all(|(id, value)| {
+                    let shape = shapes.iter().find(|(known, _)| known == id);
+                    seen.insert(id) && shape.is_none_or(|(_, shape)| shape.fits(value))
+                })
+            }
             _ => false,
         }
     }
@@ -223,9 +226,7 @@ impl Reader<'_> {
     }
 
     fn structure(&mut self, depth: usize) -> Checked<FieldValue> {
-        if depth == 0 {
-            return Err(format!("has headers nested deeper than {MOST_DEPTH}"));
-        }
+        let below = depth_below(depth)?;
         let (mut fields, mut id) = (Vec::new(), 0_i64);
         loop {
             let head = self.byte()?;
@@ -238,7 +239,7 @@ impl Reader<'_> {
             id = if head >> 4 == 0 { self.whole()? } else { id.wrapping_add(i64::from(head >> 4)) };
             // Whether it is so is in the kind.
             let value =
-                if head & 15 < 3 { FieldValue::Switch } else { self.value(head & 15, depth)? };
+                if head & 15 < 3 { FieldValue::Switch } else { self.value(head & 15, below)? };
             fields.push((id, value));
         }
     }
@@ -253,22 +254,28 @@ impl Reader<'_> {
                 self.skip(length).map(|()| FieldValue::Text)
             }
             9 | 10 => self.list(depth),
-            12 => self.structure(depth - 1),
+            12 => self.structure(depth),
             _ => Err(format!("has a header of kind {kind}")),
         }
     }
 
     fn list(&mut self, depth: usize) -> Checked<FieldValue> {
+        let below = depth_below(depth)?;
         let head = self.byte()?;
         let count = if head >> 4 == 15 { self.varint()? } else { u64::from(head >> 4) };
         if count > self.0.len() as u64 {
             return Err(format!("has a list of {count} in {} bytes", self.0.len()));
         }
         (0..count)
-            .map(|_| self.value(head & 15, depth))
+            .map(|_| self.value(head & 15, below))
             .collect::<Checked<_>>()
             .map(FieldValue::List)
     }
+}
+
+/// How deep a structure or a list may go on where it may itself be so deep.
+fn depth_below(depth: usize) -> Checked<usize> {
+    depth.checked_sub(1).ok_or_else(|| format!("has headers nested deeper than {MOST_DEPTH}"))
 }
 
 /// Looks at the footer of a file of so many bytes.
@@ -361,4 +368,40 @@ pub(super) fn caught<T>(act: impl FnOnce() -> T) -> Checked<T> {
     let done = catch_unwind(AssertUnwindSafe(act));
     IS_CAUGHT.set(false);
     done.map_err(|_| "is damaged".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_within_lists_are_refused_before_the_stack_ends() {
+        // A field that is a list of one list of one list …
+        let footer = [0x19; 20_000];
+        let said = check_footer(&footer, 20_000);
+        assert_eq!(said, Err(format!("has headers nested deeper than {MOST_DEPTH}")));
+    }
+
+    #[test]
+    fn fields_that_nobody_knows_are_looked_at_once_each() {
+        // A structure whose first field is number 100, with another number than the one before each: all are switches.
+        let header = |fields: usize| [&[0x01, 200, 1][..], &vec![0x11_u8; fields]].concat();
+        let secs = |fields: usize| {
+            let footer = [&header(fields)[..], &[0]].concat();
+            let look = || {
+                let begun = std::time::Instant::now();
+                assert_eq!(check_footer(&footer, 200_000), Err("has no schema".into()));
+                begun.elapsed().as_secs_f64()
+            };
+            (0..5).map(|_| look()).fold(f64::INFINITY, f64::min)
+        };
+        // As many times the fields take as many times the time, and not its square.
+        let ratio = secs(64_000) / secs(4_000);
+        assert!(ratio < 80.0, "16 times the fields took {ratio} times the time");
+        let twice = check_footer(&[&header(100)[..], &[0x01, 200, 1, 0]].concat(), 200_000);
+        assert!(
+            twice.is_err_and(|said| said.contains("of another kind")),
+            "a field that is there twice"
+        );
+    }
 }
