@@ -175,6 +175,16 @@ mod tests {
     }
 
     #[test]
+    fn where_neither_is_so_one_of_two_is_seen_in_five_of_a_hundred() {
+        // On a grid of two even p-values: 1 − 0.975² of it.
+        let side = 400;
+        let p = |place: usize| (place as f64 + 0.5) / side as f64;
+        let seen = (0..side * side).filter(|at| p_of_either(p(at % side), p(at / side)) < 0.05);
+        near(seen.count() as f64 / (side * side) as f64, 0.049_375, 1e-12);
+        assert_eq!(p_of_either(0.7, 0.9), 1.0);
+    }
+
+    #[test]
     fn shares_of_clopper_and_pearson() {
         // Tables: 2 of 10 gives 2.52 % … 55.61 %; 0 of 10 gives 0 … 30.85 %.
         let (share_of, low, high) = share(2, 10);
