@@ -287,7 +287,7 @@ impl ContactList {
         world: &World,
         candidates: &Candidates,
         ahead: LookAhead,
-        velocity_of_wall: impl Fn(&Contact) -> DVec2 + Sync,
+        normal_velocity_of_wall: impl Fn(&Contact) -> f64 + Sync,
     ) {
         self.looks_ahead = true;
         let gap_tolerance = candidates.gap_tolerance();
@@ -307,11 +307,15 @@ impl ContactList {
                 return true;
             }
             let i = contact.grain as usize;
-            let other = match numbering.other(contact.other) {
-                Other::Grain(j) => velocities[j] + world.speed_of_image(i, j) * DVec2::X,
-                Other::FixedDisc(_) | Other::Feature(_) => velocity_of_wall(contact),
+            let opening = match numbering.other(contact.other) {
+                Other::Grain(j) => {
+                    let other = velocities[j] + world.speed_of_image(i, j) * DVec2::X;
+                    contact.normal.dot(velocities[i] - other)
+                }
+                Other::FixedDisc(_) | Other::Feature(_) => {
+                    contact.normal.dot(velocities[i]) - normal_velocity_of_wall(contact)
+                }
             };
-            let opening = contact.normal.dot(velocities[i] - other);
             gap < ahead.reach && gap + ahead.time_step_secs * opening.min(0.0) < ahead.distance
         });
     }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Candidates, Contact, ContactList, LookAhead, Reach};
+use crate::contact::{Candidates, ContactList, LookAhead, Reach};
 use crate::error::Result;
 use crate::sim::pull::Pull;
 use crate::sim::step_times::Stopwatch;
@@ -82,10 +82,9 @@ impl State {
             |grain: usize| ahead.way_of_grain(world.grains.velocities[grain]) + slides;
         let way_of_walls = ahead.time_step_secs * walls.fastest(world, candidates);
         candidates.update_ahead::<AXES>(world, way_of_grain, ahead.way_of_others(way_of_walls));
-        let velocity_of_wall = |contact: &Contact| {
-            walls.surface(world, contact).map_or(DVec2::ZERO, |surface| surface.velocity)
-        };
-        contacts.detect_ahead::<AXES>(world, candidates, ahead, velocity_of_wall);
+        contacts.detect_ahead::<AXES>(world, candidates, ahead, |contact| {
+            walls.velocity(world, contact)[0]
+        });
     }
 
     /// Speed of the fastest grain or wall of a step that has begun, m/s.

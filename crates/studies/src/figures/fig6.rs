@@ -82,10 +82,10 @@ fn guess(groups: &[Alike], count: usize, turn: Turn) -> Claim {
         verdict(turn),
     )
     .shuffled(groups, |_| 0.0, holds)
-    .hanging_on(
-        "the shifted cone; three Bonds drawn as one curve; a broken line as the shape of the curve. By chance: of 20 \
-         resamplings a shuffle",
-    )
+    .hanging_on(format!(
+        "the shifted cone; three Bonds drawn as one curve; a broken line as the shape of the curve. By chance: of \
+         {FEWER_RESAMPLINGS} resamplings a shuffle"
+    ))
 }
 
 fn regimes(groups: &[Alike], count: usize) -> Claim {

@@ -5,7 +5,8 @@
 //!
 //! * A step is long against the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile whose
 //!   bonds are not, or that stands, is stepped at full length. Where bonds were restless in the step before, tried
-//!   whole or in any of its pieces, or bonded pairs circle fast ([`circling_looks_like_a_shock`]), the next one is cut without being tried.
+//!   whole or in any of its pieces, or bonded pairs circle fast ([`circling_looks_like_a_shock`]), the next one is cut
+//!   without being tried.
 //!   Where sixteen substeps are too long for a break, the step says so, and which one would not be (`sim::alarm`).
 //! * Grains go far. A contact's normal is that of the beginning of the step, so the constraint
 //!   v_n + gap/Δt ≥ 0 bars a grain from passing another one that it would have missed: without cohesion,
