@@ -14,6 +14,11 @@ fn main() {
         None => version.to_owned(),
     };
     println!("cargo::rustc-env=SLUMP_VERSION={version}");
+    // The first thread gets 1 MiB on Windows, and a window that opens a session needs more than 2.
+    let target = |part: &str| std::env::var(format!("CARGO_CFG_TARGET_{part}"));
+    if target("OS").as_deref() == Ok("windows") && target("ENV").as_deref() == Ok("gnu") {
+        println!("cargo::rustc-link-arg-bins=-Wl,--stack,8388608");
+    }
 }
 
 /// What git says; nothing where it says nothing.

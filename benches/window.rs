@@ -29,6 +29,8 @@ const REPEATS: usize = 3;
 /// Steps of the pile that other piles are computed beside, at 1e-3 s, and how often.
 const COLLAPSE: u64 = 900;
 const TURNS: usize = 10;
+/// Frames of which the fastest tells what panels take.
+const FRAMES: usize = 100;
 /// Changes of the time step whose latency is measured.
 const CHANGES: usize = 40;
 
@@ -69,6 +71,21 @@ impl Window {
                 return;
             }
         }
+    }
+
+    /// Least time that the panels and their triangles take of a frame, without a pixel being drawn, ms.
+    fn panels(&mut self) -> f64 {
+        let Self { state, context, .. } = self;
+        let size = egui::vec2(SIZE[0] as f32, SIZE[1] as f32);
+        let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
+        let millis = (0..FRAMES).map(|_| {
+            let start = Instant::now();
+            let input = egui::RawInput { screen_rect, ..egui::RawInput::default() };
+            let output = context.run_ui(input, |root| ui(root, state));
+            std::hint::black_box(context.tessellate(output.shapes, output.pixels_per_point));
+            1e3 * start.elapsed().as_secs_f64()
+        });
+        millis.fold(f64::INFINITY, f64::min)
     }
 
     /// How long a run takes to stand still after it is told to, ms: median and worst. Nothing is drawn meanwhile.
@@ -193,7 +210,9 @@ fn frames() {
         }
         let secs = start.elapsed().as_secs_f64();
         let steps = (window.steps() - first) as f64 / secs;
-        let name = window.canvas.name();
+        let name = window.canvas.name().to_owned();
+        let panels = window.panels();
+        println!("{count} discs: panels {panels:.2} ms of a frame");
         println!("{count} discs: {:.0} frames/s, {steps:.1} steps/s ({name})", drawn as f64 / secs);
         let [median, worst] = window.pauses();
         println!("{count} discs: pause to standstill: median {median:.1} ms, worst {worst:.1} ms");

@@ -193,6 +193,11 @@ impl Ffmpeg {
         // Ctrl-C is for this program, which then finishes the video.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        #[cfg(windows)]
+        std::os::windows::process::CommandExt::creation_flags(
+            &mut command,
+            windows_sys::Win32::System::Threading::CREATE_NEW_PROCESS_GROUP,
+        );
         Ok(Self { process: command.spawn()?, encoded, messages })
     }
 

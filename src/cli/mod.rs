@@ -28,7 +28,7 @@ use studies::StudyCommand;
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
-#[command(version = crate::VERSION, args_conflicts_with_subcommands = true)]
+#[command(name = "slump", version = crate::VERSION, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(flatten)]
     config: Config,

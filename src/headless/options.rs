@@ -229,8 +229,7 @@ impl HeadlessOptions {
     }
 
     pub(super) fn video_rate_hz(&self) -> Result<f64> {
-        if let Some(path) = &self.video {
-            check_ffmpeg(path.display())?;
+        if self.video.is_some() {
             let PictureSize { width, height } = self.size()?;
             let [least, most] = VIDEO_SIDES;
             let is_side = |side: u32| side.is_multiple_of(2) && (least..=most).contains(&side);
@@ -243,12 +242,13 @@ impl HeadlessOptions {
         let speed = self.video_speed()?;
         let rate_hz = self.pictures_per_sec()? * speed;
         let [least, most] = VIDEO_RATES_HZ;
-        if self.video.is_none() || (least..=most).contains(&rate_hz) {
-            return Ok(rate_hz);
+        let Some(path) = &self.video else { return Ok(rate_hz) };
+        if !(least..=most).contains(&rate_hz) {
+            let found = format!("{} at --video-speed {speed}", self.pictures_per_sec()?);
+            let allowed = format!("such that a second of the video has {least} to {most} pictures");
+            return Err(Error::value("fps", found, allowed));
         }
-        let found = format!("{} at --video-speed {speed}", self.pictures_per_sec()?);
-        let allowed = format!("such that a second of the video has {least} to {most} pictures");
-        Err(Error::value("fps", found, allowed))
+        check_ffmpeg(path.display()).map(|()| rate_hz)
     }
 
     /// The times of the pictures of a run that lasts `duration_secs`, s, rising.

@@ -5,8 +5,6 @@
 //! a snapshot into a picture of walls, discs and `overlays`; [`draw_scene`], which adds scale bar, legend and words;
 //! [`PanelGrid`], which arranges several pictures as a journal does.
 
-#[cfg(all(test, feature = "gpu"))]
-mod agreement_tests;
 mod camera;
 mod colour;
 mod figure;
@@ -23,6 +21,8 @@ mod scene;
 #[cfg(test)]
 mod scene_tests;
 mod style;
+#[cfg(all(test, feature = "gpu"))]
+mod tests_with_driver;
 mod text;
 mod walls;
 

@@ -19,7 +19,26 @@ pub fn slump(line: &str) -> Command {
     let mut command =
         Command::new(std::env::var_os("SLUMP_PROGRAM").map_or_else(built, PathBuf::from));
     command.args(line.split_whitespace());
+    #[cfg(unix)]
+    heed_signals(&mut command);
     command
+}
+
+/// Has a program start with signals as a terminal gives them, even if the tests were started with some ignored (`nohup`, a job
+/// in the background of a script): a program inherits ignored signals, and Slump rightly leaves them ignored.
+#[cfg(unix)]
+fn heed_signals(command: &mut Command) {
+    let default = || {
+        for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
+            // SAFETY: no handler is installed, and `signal` may be called between fork and exec.
+            if unsafe { libc::signal(signal, libc::SIG_DFL) } == libc::SIG_ERR {
+                return Err(std::io::Error::last_os_error());
+            }
+        }
+        Ok(())
+    };
+    // SAFETY: the closure allocates nothing and calls only `signal`.
+    unsafe { std::os::unix::process::CommandExt::pre_exec(command, default) };
 }
 
 pub fn folder() -> TempDir {

@@ -65,7 +65,7 @@ fn scene_files() {
 
 #[test]
 fn tables_of_discs() {
-    let shipped = file("assets/pile_138.csv");
+    let shipped = file("crates/core/assets/pile_138.csv");
     let short: Vec<&str> = shipped.lines().take(12).collect();
     let mut texts = vec![short.join("\n"), "x,y,radius,vx,vy,omega\n0,0.01,2e-3,0,0,0\n".into()];
     for count in [2_000, 20_000] {

@@ -199,7 +199,7 @@ fn the_shipped_initial_state_is_reproduced_bit_for_bit() {
     let folder = folder();
     let out = folder.path().join("pile.csv");
     succeed(slump("generate --out").arg(&out));
-    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/pile_138.csv");
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/assets/pile_138.csv");
     assert_eq!(read(&out), read(shipped));
 }
 

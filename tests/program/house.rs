@@ -1,16 +1,22 @@
 //! The rules of the house that no compiler sees, kept by reading the sources.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A file is one concept; longer ones are rarely one.
 const LONGEST_FILE: usize = 500;
 
-/// All Rust files of the package and its crates, by their path, but for those that test.
+/// All Rust files of the package and its crates, by their path, except those that test.
 fn sources() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    files_below(&[root.join("src"), root.join("crates")])
+}
+
+/// All Rust files below some folders of the package, by their path.
+fn files_below(folders: &[PathBuf]) -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = BTreeMap::new();
-    let mut folders = vec![root.join("src"), root.join("crates")];
+    let mut folders = folders.to_vec();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();
@@ -112,4 +118,43 @@ fn documents_name_files_that_are_there() {
         gone.extend(files.filter(|name| !is_there(name)).map(|name| format!("{document}: {name}")));
     }
     assert!(gone.is_empty(), "{gone:#?}");
+}
+
+/// `f64::max` and `f64::min` leave open which of 0.0 and -0.0 they return: [`slump_core::number::Parts`] does not.
+#[test]
+fn no_sign_of_a_zero_depends_on_the_compiler() {
+    let sources = sources();
+    let of_physics = sources.iter().filter(|(path, _)| {
+        path.starts_with("crates/core/src/") || path.starts_with("crates/data/src/")
+    });
+    let open: Vec<_> = of_physics
+        .flat_map(|(path, text)| text.lines().map(move |line| (path, line.trim())))
+        .filter(|(_, line)| [".max(0.0)", ".min(0.0)"].iter().any(|call| line.contains(call)))
+        .collect();
+    assert!(
+        open.is_empty(),
+        "`positive_part` and `negative_part` are the same everywhere: {open:#?}"
+    );
+}
+
+/// Tests that need more than Rust are run by `cargo test -- --ignored with_driver with_ffmpeg`, which goes by names.
+#[test]
+fn tests_that_need_a_program_have_it_in_their_name() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut needy = 0;
+    for (path, text) in files_below(&[root.join("src"), root.join("crates"), root.join("tests")]) {
+        let mut module = path.clone();
+        for line in text.lines() {
+            if let Some(name) = line.strip_prefix("mod ") {
+                module = format!("{path} {name}");
+            }
+            if let Some(reason) = line.trim_start().strip_prefix("#[ignore = \"needs ") {
+                needy += 1;
+                let named = reason.contains("ffmpeg") && module.contains("with_ffmpeg")
+                    || reason.contains("driver") && module.contains("with_driver");
+                assert!(named, "{module}: needs {reason}");
+            }
+        }
+    }
+    assert!(needy > 10, "{needy}");
 }

@@ -6,6 +6,10 @@ use crate::program::*;
 const STUDY: &str =
     "name = 'two'\n[base]\nscene = 'cradle'\nduration = 0.1\n[vary]\ndt = [1e-3, 2e-3]\n";
 
+const DRAWN: &str = "--headless --scene cradle --duration 0.1 --renderer cpu --size 16x16";
+/// Bytes of a stack that no machine has room for, so that no thread can be started.
+const NO_ROOM: &str = "70368744177664";
+
 #[test]
 fn without_threads_what_needs_them_is_refused_and_what_does_not_runs() {
     let folder = folder();
@@ -13,8 +17,7 @@ fn without_threads_what_needs_them_is_refused_and_what_does_not_runs() {
     write(at("study.toml"), STUDY);
     let without_threads = |line: &str, out: &str| {
         let mut command = slump(line);
-        // No machine has room for such a stack.
-        command.arg(at(out)).env("RUST_MIN_STACK", "70368744177664").current_dir(folder.path());
+        command.arg(at(out)).env("RUST_MIN_STACK", NO_ROOM).current_dir(folder.path());
         command
     };
     let said =
@@ -24,9 +27,8 @@ fn without_threads_what_needs_them_is_refused_and_what_does_not_runs() {
         let said = sentence(&mut without_threads(line, "out"));
         assert!(said.contains("the number of threads is too high"), "{line}: {said}");
     }
-    for (option, out) in [("--frames", "f"), ("--gif", "a.gif"), ("--video", "v.mp4")] {
-        let line = "--headless --scene cradle --duration 0.1 --renderer cpu --size 16x16";
-        succeed(&mut without_threads(&format!("{line} {option}"), out));
+    for (option, out) in [("--frames", "f"), ("--gif", "a.gif")] {
+        succeed(&mut without_threads(&format!("{DRAWN} {option}"), out));
         assert!(at(out).exists(), "{option}");
     }
 }
@@ -139,4 +141,18 @@ fn substeps_of_very_small_grains_are_told_of_before_they_begin() {
     kill(&mut child);
     let said = std::io::read_to_string(child.stderr.take().expect("stderr")).expect("UTF-8");
     assert!(said.contains("steps, which take long"), "{said}");
+}
+
+mod with_ffmpeg {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs ffmpeg"]
+    fn without_threads_a_video_is_made() {
+        let folder = folder();
+        let video = folder.path().join("v.mp4");
+        let mut command = slump(&format!("{DRAWN} --video"));
+        succeed(command.arg(&video).env("RUST_MIN_STACK", NO_ROOM));
+        assert!(video.exists());
+    }
 }

@@ -1,77 +1,10 @@
 //! Videos of the command line: what is in them, that they can be made again, and what is refused.
 
-use crate::probed::{Probed, probe};
 use crate::program::*;
 
 /// A cradle on its way, drawn by the processor.
 const CRADLE: &str =
     "--headless --scene cradle --dt 1e-3 --duration 0.2 --size 320x90 --renderer cpu";
-
-fn made(more: &[&str], video: &Path) -> Probed {
-    let output = run(slump(CRADLE).args(more).arg("--video").arg(video));
-    assert!(output.status.success(), "{}", said(&output));
-    let told = String::from_utf8_lossy(&output.stdout);
-    assert!(told.lines().any(|line| line == text(video)), "it says where: {told}");
-    probe(video)
-}
-
-#[test]
-fn a_video_goes_at_the_pace_of_time_and_can_be_made_again() {
-    let folder = folder();
-    let first = folder.path().join("first.mp4");
-    let told = made(&["--fps", "50", "--show", "forces"], &first);
-    // The first picture at 0 and the last at 0.2 s.
-    assert_eq!((told.pictures, &*told.rate_hz, told.size), (11, "50/1", [320, 90]));
-    assert_eq!(told.key_pictures, [1], "one a second");
-    assert_eq!([&*told.codec, &told.pixels, &told.colours], ["h264", "yuv420p", "bt709"]);
-    // The command that it carries makes the same file, to the last bit.
-    let line = told
-        .comment
-        .lines()
-        .find_map(|line| line.strip_prefix("Command line: "))
-        .expect("a command");
-    let words = shlex::split(line).expect("words");
-    assert_eq!(words[words.len() - 2..], ["--video", "video.mp4"], "{line}");
-    let again = folder.path().join("again.mp4");
-    let mut words: Vec<&str> = words[1..words.len() - 1].iter().map(String::as_str).collect();
-    words.extend([text(&again), "--renderer", "cpu"]);
-    succeed(slump("").args(words));
-    assert!(bytes(again) == bytes(first), "{line}");
-    assert_eq!(names_in(folder.path()).len(), 2, "nothing else is left");
-}
-
-#[test]
-fn a_slower_video_has_more_pictures_of_the_same_stretch() {
-    let folder = folder();
-    let told = made(&["--video-speed", "0.5"], &folder.path().join("slow.mp4"));
-    // 25 a second of the video, 50 per simulated second.
-    assert_eq!((told.pictures, &*told.rate_hz), (11, "25/1"));
-    assert!(told.comment.contains("--video-speed 0.5"), "{}", told.comment);
-}
-
-#[test]
-fn frames_and_video_show_the_same() {
-    let folder = folder();
-    let frames = folder.path().join("frames");
-    let video = folder.path().join("both.mp4");
-    let told = made(&["--colour", "speed", "--frames", text(&frames)], &video);
-    let mut pictures = names_in(&frames);
-    pictures.retain(|name| name.ends_with(".png"));
-    assert_eq!(told.pictures, pictures.len());
-    assert_eq!(told.key_pictures, [1]);
-    // Decoded as the standard says.
-    let mut decoder = Command::new("ffmpeg");
-    decoder.args(["-v", "error", "-i"]).arg(&video);
-    decoder.args(["-vf", "scale=in_color_matrix=bt709:in_range=tv,format=rgb24"]);
-    let decoded = decoder.args(["-f", "rawvideo", "-"]).output().expect("ffmpeg").stdout;
-    assert_eq!(decoded.len(), told.pictures * 320 * 90 * 3);
-    for (name, decoded) in pictures.iter().zip(decoded.chunks(320 * 90 * 3)) {
-        let frame = image::open(frames.join(name)).expect("a picture").into_rgb8();
-        let apart = frame.iter().zip(decoded).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
-        let mean = apart.sum::<f64>() / decoded.len() as f64;
-        assert!(mean < 20.0, "{name}: {mean} is a PSNR below 35 dB");
-    }
-}
 
 #[test]
 fn what_makes_no_video_is_refused_before_anything_is_written() {
@@ -133,32 +66,109 @@ fn what_ffmpeg_says_last_is_told_where_it_fails() {
     }
 }
 
-#[cfg(unix)]
-#[test]
-fn a_run_that_is_stopped_has_a_whole_video_and_leaves_what_it_would_have_left_when_it_goes_on() {
-    use std::os::unix::process::CommandExt;
-    let run = |folder: &Path| {
-        let mut command = slump(
-            "--headless --bond 20 --dt 1e-3 --duration 0.3 --fps 50 --size 160x100 --renderer cpu \
-             --checkpoint-every 100 --frames",
-        );
-        command.arg(folder).arg("--video").arg(folder.join("a.mp4"));
-        command
-    };
-    let (whole, stopped) = (folder(), folder());
-    succeed(&mut run(whole.path()));
-    let whole = whole.path().join("a.mp4");
-    assert_eq!(probe(&whole).pictures, 16);
-    let whole = bytes(whole);
+mod with_ffmpeg {
+    use crate::probed::{Probed, probe};
 
-    let mut child = run(stopped.path()).process_group(0).spawn().expect("the program starts");
-    wait_for("pictures", || stopped.path().join("frame_00003.png").exists());
-    // As a terminal does: to the program and to all that it has started.
-    send("INT", -i64::from(child.id()));
-    assert_eq!(ended(&mut child), Some(130));
-    let video = stopped.path().join("a.mp4");
-    let part = probe(&video).pictures;
-    assert!((4..16).contains(&part), "the pictures so far: {part}");
-    succeed(&mut run(stopped.path()));
-    assert!(bytes(&video) == whole, "as if it had not been stopped");
+    use super::*;
+
+    fn made(more: &[&str], video: &Path) -> Probed {
+        let output = run(slump(CRADLE).args(more).arg("--video").arg(video));
+        assert!(output.status.success(), "{}", said(&output));
+        let told = String::from_utf8_lossy(&output.stdout);
+        assert!(told.lines().any(|line| line == text(video)), "it says where: {told}");
+        probe(video)
+    }
+
+    #[test]
+    #[ignore = "needs ffmpeg"]
+    fn a_video_goes_at_the_pace_of_time_and_can_be_made_again() {
+        let folder = folder();
+        let first = folder.path().join("first.mp4");
+        let told = made(&["--fps", "50", "--show", "forces"], &first);
+        // The first picture at 0 and the last at 0.2 s.
+        assert_eq!((told.pictures, &*told.rate_hz, told.size), (11, "50/1", [320, 90]));
+        assert_eq!(told.key_pictures, [1], "one a second");
+        assert_eq!([&*told.codec, &told.pixels, &told.colours], ["h264", "yuv420p", "bt709"]);
+        // The command that it carries makes the same file, to the last bit.
+        let line = told
+            .comment
+            .lines()
+            .find_map(|line| line.strip_prefix("Command line: "))
+            .expect("a command");
+        let words = shlex::split(line).expect("words");
+        assert_eq!(words[words.len() - 2..], ["--video", "video.mp4"], "{line}");
+        let again = folder.path().join("again.mp4");
+        let mut words: Vec<&str> = words[1..words.len() - 1].iter().map(String::as_str).collect();
+        words.extend([text(&again), "--renderer", "cpu"]);
+        succeed(slump("").args(words));
+        assert!(bytes(again) == bytes(first), "{line}");
+        assert_eq!(names_in(folder.path()).len(), 2, "nothing else is left");
+    }
+
+    #[test]
+    #[ignore = "needs ffmpeg"]
+    fn a_slower_video_has_more_pictures_of_the_same_stretch() {
+        let folder = folder();
+        let told = made(&["--video-speed", "0.5"], &folder.path().join("slow.mp4"));
+        // 25 a second of the video, 50 per simulated second.
+        assert_eq!((told.pictures, &*told.rate_hz), (11, "25/1"));
+        assert!(told.comment.contains("--video-speed 0.5"), "{}", told.comment);
+    }
+
+    #[test]
+    #[ignore = "needs ffmpeg"]
+    fn frames_and_video_show_the_same() {
+        let folder = folder();
+        let frames = folder.path().join("frames");
+        let video = folder.path().join("both.mp4");
+        let told = made(&["--colour", "speed", "--frames", text(&frames)], &video);
+        let mut pictures = names_in(&frames);
+        pictures.retain(|name| name.ends_with(".png"));
+        assert_eq!(told.pictures, pictures.len());
+        assert_eq!(told.key_pictures, [1]);
+        // Decoded as the standard says.
+        let mut decoder = Command::new("ffmpeg");
+        decoder.args(["-v", "error", "-i"]).arg(&video);
+        decoder.args(["-vf", "scale=in_color_matrix=bt709:in_range=tv,format=rgb24"]);
+        let decoded = decoder.args(["-f", "rawvideo", "-"]).output().expect("ffmpeg").stdout;
+        assert_eq!(decoded.len(), told.pictures * 320 * 90 * 3);
+        for (name, decoded) in pictures.iter().zip(decoded.chunks(320 * 90 * 3)) {
+            let frame = image::open(frames.join(name)).expect("a picture").into_rgb8();
+            let apart = frame.iter().zip(decoded).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
+            let mean = apart.sum::<f64>() / decoded.len() as f64;
+            assert!(mean < 20.0, "{name}: {mean} is a PSNR below 35 dB");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    #[ignore = "needs ffmpeg"]
+    fn a_run_that_is_stopped_has_a_whole_video_and_leaves_what_it_would_have_left_when_it_goes_on()
+    {
+        use std::os::unix::process::CommandExt;
+        let run = |folder: &Path| {
+            let mut command = slump(
+                "--headless --bond 20 --dt 1e-3 --duration 0.3 --fps 50 --size 160x100 --renderer cpu \
+                 --checkpoint-every 100 --frames",
+            );
+            command.arg(folder).arg("--video").arg(folder.join("a.mp4"));
+            command
+        };
+        let (whole, stopped) = (folder(), folder());
+        succeed(&mut run(whole.path()));
+        let whole = whole.path().join("a.mp4");
+        assert_eq!(probe(&whole).pictures, 16);
+        let whole = bytes(whole);
+
+        let mut child = run(stopped.path()).process_group(0).spawn().expect("the program starts");
+        wait_for("pictures", || stopped.path().join("frame_00003.png").exists());
+        // As a terminal does: to the program and to all that it has started.
+        send("INT", -i64::from(child.id()));
+        assert_eq!(ended(&mut child), Some(130));
+        let video = stopped.path().join("a.mp4");
+        let part = probe(&video).pictures;
+        assert!((4..16).contains(&part), "the pictures so far: {part}");
+        succeed(&mut run(stopped.path()));
+        assert!(bytes(&video) == whole, "as if it had not been stopped");
+    }
 }

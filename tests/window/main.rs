@@ -5,7 +5,7 @@
 //! leaves in `target/golden/` and renew the files with
 //!
 //! ```text
-//! SLUMP_BLESS=1 cargo test --release --test window
+//! SLUMP_BLESS=1 cargo test --release --test window -- --ignored with_driver
 //! ```
 
 mod alarms;
@@ -17,14 +17,12 @@ mod lessons;
 mod looking;
 mod monkey;
 mod other_piles;
-mod pictures;
-mod provenance;
 mod recording;
 mod recordings;
 mod remote;
 mod robot;
 mod sessions;
-mod videos;
+mod with_driver;
 
 #[path = "../common/probed.rs"]
 #[allow(dead_code, reason = "tests of the command line use more of it")]

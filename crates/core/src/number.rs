@@ -1,5 +1,5 @@
-//! Numbers in files, whether or not they are finite: JSON has no word for those that are not, and what
-//! is written as `null` reads back as nothing. For `#[serde(with = "number")]`.
+//! Numbers that every compiler and every file treats alike. `#[serde(with = "number")]` writes numbers that are not
+//! finite as words, because JSON has none for them and would read `null` back as nothing.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serializer};
@@ -32,8 +32,43 @@ pub(crate) fn is_zero<N: Default + PartialEq>(number: &N) -> bool {
     *number == N::default()
 }
 
+/// The parts of a number above and below 0, with the same bits from every compiler. `f64::max` and `f64::min` leave open
+/// which of 0.0 and -0.0 they return, and compilers differ.
+pub trait Parts {
+    /// The larger of the number and 0; 0.0 for NaN and for both zeros.
+    fn positive_part(self) -> Self;
+    /// The smaller of the number and 0; 0.0 for NaN and for both zeros.
+    fn negative_part(self) -> Self;
+}
+
+impl Parts for f64 {
+    #[inline(always)]
+    fn positive_part(self) -> Self {
+        if self > 0.0 { self } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn negative_part(self) -> Self {
+        if self < 0.0 { self } else { 0.0 }
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::Parts;
+
+    #[test]
+    fn parts_have_the_positive_zero_whichever_zero_they_are_of() {
+        for number in [0.0, -0.0, f64::NAN] {
+            assert_eq!(number.positive_part().to_bits(), 0.0f64.to_bits(), "{number:?}");
+            assert_eq!(number.negative_part().to_bits(), 0.0f64.to_bits(), "{number:?}");
+        }
+        for number in [5e-324, 1.0, f64::INFINITY] {
+            assert_eq!([number.positive_part(), (-number).positive_part()], [number, 0.0]);
+            assert_eq!([number.negative_part(), (-number).negative_part()], [0.0, -number]);
+        }
+    }
+
     #[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
     struct Row {
         #[serde(with = "super")]

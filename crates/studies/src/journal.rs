@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
-use crate::output::{in_use, is_recognised, note_line};
+use crate::output::{in_use, is_recognised, lock_of, note_line};
 use crate::runner::FinishedCase;
 
 const ENDING: &str = "jsonl";
@@ -24,6 +24,8 @@ pub(super) fn path_of(folder: &Path, name: &str) -> PathBuf {
 pub(super) struct Journal {
     path: PathBuf,
     file: Mutex<File>,
+    /// Held as long as the journal is open.
+    _lock: File,
 }
 
 impl Journal {
@@ -34,7 +36,8 @@ impl Journal {
         let refuse = |error: std::io::Error| Error::file(&path, error);
         let file = OpenOptions::new().create(true).read(true).append(true).open(&path);
         let file = file.map_err(refuse)?;
-        file.try_lock().map_err(|_| in_use(&path))?;
+        let lock = lock_of(&path).map_err(refuse)?;
+        lock.try_lock().map_err(|_| in_use(&path))?;
         if !is_recognised(&path)? {
             let reason = "holds no record of this program, but must be its journal or not be there";
             return Err(Error::file(&path, reason));
@@ -43,7 +46,7 @@ impl Journal {
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
         file.set_len(whole as u64).map_err(refuse)?;
         blank_damaged(&path, &bytes[..whole]).map_err(refuse)?;
-        Ok(Self { path, file: Mutex::new(file) })
+        Ok(Self { path, file: Mutex::new(file), _lock: lock })
     }
 
     pub(super) fn add(&self, entry: &impl Serialize) -> Result<()> {
@@ -144,7 +147,7 @@ pub(super) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
 pub(super) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     let paths = journals(&[folder.to_owned()])?;
     let is_in_use =
-        |path: &&PathBuf| File::open(path).is_ok_and(|file| file.try_lock_shared().is_err());
+        |path: &&PathBuf| lock_of(path).is_ok_and(|lock| lock.try_lock_shared().is_err());
     match paths.iter().find(is_in_use) {
         Some(path) => Err(in_use(path)),
         None => Ok(paths),

@@ -19,7 +19,7 @@ use crate::world::Grain;
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// Cores that are left to what is in front; where the system is not asked for a lower priority, another one for the
 /// window.
-const LEFT: usize = if cfg!(target_os = "linux") { 1 } else { 2 };
+const LEFT: usize = if cfg!(any(target_os = "linux", windows)) { 1 } else { 2 };
 
 /// How many cores are idle while a world runs: none where there is one.
 pub(super) fn idle_cores() -> usize {
@@ -35,6 +35,14 @@ fn give_way() {
         const NICEST: i32 = 19;
         // Where it is refused, the thread shares its core as any other would.
         let _ = rustix::process::setpriority_process(None, NICEST);
+    }
+    #[cfg(windows)]
+    {
+        use windows_sys::Win32::System::Threading::{
+            GetCurrentThread, SetThreadPriority, THREAD_PRIORITY_IDLE,
+        };
+        // SAFETY: the handle stands for the calling thread, and needs no closing.
+        unsafe { SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_IDLE) };
     }
 }
 

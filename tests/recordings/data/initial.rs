@@ -109,7 +109,7 @@ fn the_base_of_a_recorded_pile_stays_as_wide_as_it_was() {
     let scene = config(folder.path(), None).scene(|_| true).expect("a scene");
     assert_eq!(scene.fixed_discs, super::scene("pile").fixed_discs);
     // Simple tables have none, and get the base that goes with the box.
-    let simple = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/pile_138.csv");
+    let simple = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/assets/pile_138.csv");
     let scene = config(simple.as_ref(), None).scene(|_| true).expect("a scene");
     assert_eq!(scene.grains, super::scene("pile").grains);
     assert_eq!(scene.fixed_discs, super::scene("pile").fixed_discs);
@@ -193,7 +193,7 @@ fn a_step_that_is_not_there_is_told_of_with_those_that_are() {
         assert!(said.starts_with("initial-step is 7, but must be one of the steps of"), "{said}");
         assert!(said.ends_with(": 10, 20, 30, 40, 50, 60"), "{said}");
     }
-    let simple = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/pile_138.csv");
+    let simple = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/assets/pile_138.csv");
     let said = refusal(&["--initial", simple, "--initial-step", "7", "--data", "no"]);
     assert!(said.starts_with("initial-step is 7, but must be left out, since"), "{said}");
     let said = refusal(&["--initial-step", "7", "--data", "no"]);

@@ -10,6 +10,7 @@ use glam::DVec2;
 use super::candidates::Candidates;
 use super::contact_list::Contact;
 use super::numbering::{Numbering, Other};
+use crate::number::Parts;
 use crate::world::World;
 
 /// Newton's steps to a meeting at the most. They converge quadratically, but where two bodies graze each
@@ -158,7 +159,7 @@ impl RelativeMotion {
             if gap <= rounding && speed < 0.0 {
                 return Some((secs, normal));
             }
-            secs += first_zero(gap.max(0.0), speed, acceleration)?;
+            secs += first_zero(gap.positive_part(), speed, acceleration)?;
             if secs > to {
                 return None;
             }

@@ -11,6 +11,7 @@ use super::candidates::Candidates;
 use super::numbering::{Numbering, Other};
 use super::range::Bond;
 use super::transmitted::{StepSums, Transmitted};
+use crate::number::Parts;
 use crate::threads;
 use crate::world::World;
 
@@ -316,7 +317,8 @@ impl ContactList {
                     contact.normal.dot(velocities[i]) - normal_velocity_of_wall(contact)
                 }
             };
-            gap < ahead.reach && gap + ahead.time_step_secs * opening.min(0.0) < ahead.distance
+            gap < ahead.reach
+                && gap + ahead.time_step_secs * opening.negative_part() < ahead.distance
         });
     }
 

@@ -4,6 +4,7 @@
 //! nothing at a column of 20 discs by a factor of four.
 
 use crate::contact::ContactList;
+use crate::number::Parts;
 use crate::scene::{SCENES, stability};
 use crate::sim::{ProblemVisitor, Settings, Simulation, Stepper};
 use crate::solver::{
@@ -68,7 +69,7 @@ fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
         let rim = spins * (i[2] + j[2]) + problem.rows.surface_speed(number);
         let v = x * (i[1] - j[1]) - y * (i[0] - j[0]) - along_image - rim;
         let [shifted, tangential] = row.impulse();
-        let lacking = (-w).max(0.0);
+        let lacking = (-w).positive_part();
         let mut of_contact = shifted * (w + 2.0 * lacking) + lacking * lacking;
         if M::FRICTION {
             of_contact += problem.friction.now[number] * v.abs() + tangential * v;

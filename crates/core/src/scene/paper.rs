@@ -26,7 +26,7 @@ const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 const LAYER_IN_DIAMETERS: f64 = 2.0;
 const LAYER_TONES: [u8; 2] = [222, 168];
 
-const INITIAL_STATE: &str = include_str!("../../../../assets/pile_138.csv");
+const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 
 /// The paper's 138 grains, from the initial state that is shipped with the program.
 ///

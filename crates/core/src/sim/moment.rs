@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{Bond, TOUCH_IN_DIAMETERS};
 use crate::contact::{Candidates, Contact, Impulse, Numbering, Other, Transmitted};
+use crate::number::Parts;
 use crate::setting::words;
 use crate::sim::observables::Observables;
 use crate::sim::settings::Settings;
@@ -239,7 +240,7 @@ impl<'a> Laws<'a> {
         }
         let rubbing = match self.parameters.cone {
             FrictionCone::Shifted => pushed_together,
-            FrictionCone::Compressive => normal.max(0.0),
+            FrictionCone::Compressive => normal.positive_part(),
         };
         if tangential.abs() >= (1.0 - SLIPS_WITHIN) * self.friction * rubbing {
             ContactStatus::Slip

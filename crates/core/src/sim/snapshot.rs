@@ -6,6 +6,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Numbering, Other};
+use crate::number::Parts;
 use crate::sim::observables::Observables;
 use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
@@ -212,7 +213,7 @@ impl Simulation {
             let other = numbering.other(contact.other);
             for index in [Some(contact.grain as usize), other.grain()].into_iter().flatten() {
                 let view = &mut views[index];
-                view.overlap = view.overlap.max(-contact.gap);
+                view.overlap = view.overlap.max((-contact.gap).positive_part());
                 view.force += normal_force.abs();
                 view.coordination += 1;
             }

@@ -5,6 +5,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::motion::{Carry, RigidVelocity, within};
+use crate::number::Parts;
 
 /// A disc that no grain moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,7 +143,7 @@ impl Boundary {
             }
             Self::Piston { point, travel, .. } => {
                 *point = carry.place(*point);
-                *travel = (*travel - carry.by.length()).max(0.0);
+                *travel = (*travel - carry.by.length()).positive_part();
             }
             Self::Segment { from, to } => {
                 (*from, *to) = (carry.place(*from), carry.place(*to));

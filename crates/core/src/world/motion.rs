@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use crate::number::Parts;
 use crate::number::is_zero;
 use crate::world::Periodic;
 
@@ -152,7 +153,7 @@ impl Motion {
             }
             _ => return,
         };
-        *left = (*left - gone).max(0.0);
+        *left = (*left - gone).positive_part();
     }
 }
 

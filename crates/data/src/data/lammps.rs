@@ -21,6 +21,7 @@ use super::table::{Column, Table, Values};
 use crate::error::{Error, Result};
 use crate::output::GrowingFile;
 use crate::sim::{GrainState, Moment, OtherBody};
+use slump_core::number::Parts;
 
 pub(super) const FOLDER: &str = "ovito";
 /// Those of grains, contacts and walls.
@@ -326,8 +327,8 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
         // Of a leaning box: those of the upright one around it, and by how much it leans.
         false => format!(
             "xy xz yz {along_x} {along_y} ss\n{:?} {:?} {tilt:?}\n{:?} {:?} 0.0\n",
-            min.x + tilt.min(0.0),
-            max.x + tilt.max(0.0),
+            min.x + tilt.negative_part(),
+            max.x + tilt.positive_part(),
             min.y,
             max.y
         ),

@@ -291,8 +291,32 @@ impl Locked {
     }
 }
 
-/// A folder that programs write to side by side, each its own part, unless one of them has it alone. The lock is the
-/// folder's own: no file stands for it that anyone could remove.
+/// Opens the file whose lock protects `path`, a file or a folder that is there: `path` itself, so that nobody can remove the
+/// lock alone.
+///
+/// # Errors
+/// Where the system does not open it.
+#[cfg(not(windows))]
+pub fn lock_of(path: &Path) -> std::io::Result<File> {
+    File::open(path)
+}
+
+/// Opens the file whose lock protects `path`, a file or a folder that is there. Windows locks no folder, and keeps even the
+/// owner of a lock from reading the file by another handle, so the lock is a file of its own.
+///
+/// # Errors
+/// Where the system does not open it.
+#[cfg(windows)]
+pub fn lock_of(path: &Path) -> std::io::Result<File> {
+    let lock = if path.is_dir() {
+        path.join(".slump-shared.lock")
+    } else {
+        path.with_added_extension("lock")
+    };
+    OpenOptions::new().create(true).truncate(false).write(true).open(lock)
+}
+
+/// A folder that programs write to side by side, each its own part, unless one of them has it alone.
 pub struct SharedFolder {
     path: PathBuf,
     folder: File,
@@ -304,7 +328,7 @@ impl SharedFolder {
     /// # Errors
     /// Where another process has it alone, or it cannot be opened.
     pub fn of(path: &Path) -> Result<Self> {
-        let folder = File::open(path).map_err(|error| Error::file(path, error))?;
+        let folder = lock_of(path).map_err(|error| Error::file(path, error))?;
         let shared = Self { path: path.to_owned(), folder };
         if shared.is_taken(shared.folder.try_lock_shared()) {
             Err(shared.in_use())

@@ -11,7 +11,7 @@ mod terminal;
 
 pub use files::{
     DraftFile, FolderLock, Locked, PendingFile, SharedFolder, Texts, check_file, check_writable,
-    final_name, folder_of, in_use, nameless_file, remove_if_there, resolved, write_file,
+    final_name, folder_of, in_use, lock_of, nameless_file, remove_if_there, resolved, write_file,
 };
 pub use growing::{GrowingFile, end_of_last};
 #[cfg(target_arch = "wasm32")]

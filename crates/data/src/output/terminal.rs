@@ -189,8 +189,27 @@ pub fn ignore_file_size_signal() {
 #[cfg(not(unix))]
 pub fn ignore_file_size_signal() {}
 
-/// Nothing is caught here.
-#[cfg(not(unix))]
+/// From now on the first Ctrl-C, Ctrl-Break or closed console is only noted; the same once more ends the program at once.
+#[cfg(windows)]
+pub fn heed_signals() {
+    use windows_sys::Win32::System::Console::{
+        CTRL_BREAK_EVENT, CTRL_C_EVENT, CTRL_CLOSE_EVENT, SetConsoleCtrlHandler,
+    };
+    extern "system" fn note(event: u32) -> windows_sys::core::BOOL {
+        let signal = match event {
+            CTRL_C_EVENT => 2,
+            CTRL_BREAK_EVENT => 15,
+            CTRL_CLOSE_EVENT => 1,
+            _ => return 0,
+        };
+        CAUGHT.compare_exchange(0, signal, Ordering::Relaxed, Ordering::Relaxed).is_ok().into()
+    }
+    // SAFETY: the handler does nothing but one operation on an atomic.
+    unsafe { SetConsoleCtrlHandler(Some(note), 1) };
+}
+
+/// No signal reaches a page.
+#[cfg(not(any(unix, windows)))]
 pub fn heed_signals() {}
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec2;
 
+use crate::number::Parts;
 use crate::world::Disc;
 
 /// Part of the reach that is rounding: by so much a disc may overlap one that it passes, or lie above where
@@ -278,7 +279,7 @@ fn place_at(deposit: &Deposit, roll: &RollingDisc, met: Obstacle) -> DVec2 {
     let &RollingDisc { radius, on, side, .. } = roll;
     let below = &deposit.discs()[on];
     let reach = radius + below.radius;
-    let other_leg = |leg: f64| ((reach - leg) * (reach + leg)).max(0.0).sqrt();
+    let other_leg = |leg: f64| ((reach - leg) * (reach + leg)).positive_part().sqrt();
     match met {
         Obstacle::Disc(index) => {
             let other = &deposit.discs()[index];

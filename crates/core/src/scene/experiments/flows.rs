@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::{SPACING, lattice, moved, of_loose_grains, open_box, place, view};
+use crate::number::Parts;
 use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
 use crate::scene::{Scene, rough_base};
 use crate::world::{
@@ -136,7 +137,7 @@ const DRUM_RATE: f64 = 2.0;
 pub fn drum() -> Scene {
     let columns = |row: i32| {
         let y = SPACING * f64::from(row) - 0.78 * DRUM_RADIUS;
-        let wide = ((DRUM_RADIUS - 1.4).powi(2) - y * y).max(0.0).sqrt();
+        let wide = ((DRUM_RADIUS - 1.4).powi(2) - y * y).positive_part().sqrt();
         let half = (wide / SPACING).floor() as i32;
         (-half..=half).map(move |column| DVec2::new(SPACING * f64::from(column), y))
     };

@@ -12,6 +12,7 @@ pub(super) mod sequential_impacts;
 use glam::DVec2;
 
 use crate::contact::{InTouch, LookAhead, Numbering};
+use crate::number::Parts;
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
@@ -236,7 +237,7 @@ pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
         for row in &mut rows {
             let move_of_other = row.j.map_or(DVec2::ZERO, |j| moves[j]);
             let lacks = row.want - (moves[row.i] - move_of_other).dot(row.normal);
-            let push = (row.push + row.mass * lacks).max(0.0);
+            let push = (row.push + row.mass * lacks).positive_part();
             let change = (push - row.push) * row.normal;
             row.push = push;
             moves[row.i] += change / grains.masses[row.i];

@@ -41,6 +41,7 @@
 //! Then all contacts belong to the first pass, which is the law as it was.
 
 use crate::contact::ContactList;
+use crate::number::Parts;
 use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{
@@ -167,7 +168,8 @@ impl<M: Model> ImpactSequence<M> {
     /// max(−u), m/s, or 0.
     fn fastest_closing(&self) -> f64 {
         let all = self.speeds.iter().zip(&self.touching);
-        all.filter(|(_, touches)| **touches).fold(0.0, |fastest, (speed, _)| fastest.max(-speed))
+        all.filter(|(_, touches)| **touches)
+            .fold(0.0, |fastest, (speed, _)| fastest.max((-speed).positive_part()))
     }
 
     /// Sets `pass` up with the rows that close faster than `least` (m/s). Whether there are any.
@@ -242,9 +244,9 @@ impl<M: Model> ImpactSequence<M> {
             row.restitution_velocity = if !self.touching[number] {
                 row.restitution_velocity
             } else if impulse > 0.0 {
-                -self.speeds[number].max(0.0) - wall_speed
+                -self.speeds[number].positive_part() - wall_speed
             } else {
-                (row.restitution_velocity + wall_speed).max(0.0) - wall_speed
+                (row.restitution_velocity + wall_speed).positive_part() - wall_speed
             };
             row.shifted_impulse += impulse;
         }

@@ -24,6 +24,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::contact::{ContactLaw, law};
+use crate::number::Parts;
 use crate::sim::pull::gravity_that_scales;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::StepperInfo;
@@ -67,7 +68,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
             contact.capture_speed = if cohesive { capture_speed } else { 0.0 };
         }
         descent.begin(problem, &substepping.start);
-        let keep_gaps = |gap: f64| gap.max(0.0) / substep_secs;
+        let keep_gaps = |gap: f64| gap.positive_part() / substep_secs;
         for _ in 0..ITERATIONS {
             descent.minimise::<M>(problem, &substepping.free, &contacts, keep_gaps);
             descent.multiply::<M>(problem, &mut contacts, keep_gaps);
@@ -75,7 +76,11 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         let reached = problem.bodies.now.clone();
         let margin = descent.margin;
         let push_out = |gap: f64| {
-            if gap > 0.0 { gap / substep_secs } else { (gap + margin).min(0.0) / substep_secs }
+            if gap > 0.0 {
+                gap / substep_secs
+            } else {
+                (gap + margin).negative_part() / substep_secs
+            }
         };
         descent.minimise::<M>(problem, &substepping.free, &contacts, push_out);
         substepping.place(stage);

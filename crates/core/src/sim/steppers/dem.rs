@@ -8,6 +8,7 @@
 //! contact laws. Where friction slides, ξ is shortened to what gives T at the bound.
 
 use crate::contact::{Contact, ContactLaw, ContactMemory, ContactParts, Impulse, Transmitted, law};
+use crate::number::Parts;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::spring_dashpot::{
@@ -118,7 +119,7 @@ impl Elements {
     ) {
         let stiffness = self.springs.stiffness;
         let damping = self.springs.damping(mass);
-        let push = (-stiffness * gap - damping * normal_velocity).max(0.0);
+        let push = (-stiffness * gap - damping * normal_velocity).positive_part();
         let cohesion = mass * self.cohesive_acceleration;
         memory.normal_force = push - cohesion;
         if M::FRICTION {

@@ -20,6 +20,7 @@
 //! contact only keeps the grains from closing the gap by more than it is.
 
 use crate::contact::{ContactLaw, law};
+use crate::number::Parts;
 use crate::sim::pull::gravity_that_scales;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
@@ -108,7 +109,7 @@ fn restitute<M: Model>(
             return [0.0; 2];
         }
         let parting = contact.wall_speed - contact.rebound;
-        let missing = (parting - normal_velocity).max(0.0) / contact.answers[0];
+        let missing = (parting - normal_velocity).positive_part() / contact.answers[0];
         let (push, before, after) = ([missing, 0.0], normal_velocity, normal_velocity + missing);
         contact.total[0] += missing;
         let (velocities, wall) = ([[before, 0.0], [after, 0.0]], contact.wall_velocity());

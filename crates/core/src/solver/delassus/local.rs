@@ -99,6 +99,7 @@ impl LocalBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Parts;
 
     /// How far (p, P_t) is from the contact's law, over the size of what is compared.
     fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
@@ -108,9 +109,9 @@ mod tests {
             block.mixed * p + block.tangential * t + free[1],
         ];
         let cohesion = if compressive { block.cohesion_impulse } else { 0.0 };
-        let bound = block.friction * (p - cohesion).max(0.0);
+        let bound = block.friction * (p - cohesion).positive_part();
         let scale = free[0].abs() + free[1].abs() + block.normal * cohesion;
-        let normal = p - (p - u[0] / block.normal).max(0.0);
+        let normal = p - (p - u[0] / block.normal).positive_part();
         let tangential = t - (t - u[1] / block.tangential).clamp(-bound, bound);
         (normal.abs() * block.normal).max(tangential.abs() * block.tangential) / scale
     }

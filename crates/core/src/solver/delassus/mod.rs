@@ -28,6 +28,7 @@ use super::methods::{
 };
 use super::settings::{SolverSettings, StopTest};
 use crate::error::{self, Error, Result};
+use crate::number::Parts;
 use crate::world::FrictionCone;
 
 /// The residual, which costs as much as a sweep, is looked at where ‖ΔP‖₂ of a sweep is at most this
@@ -201,13 +202,14 @@ impl DelassusRow {
     /// e_n² + e_t², (N·s)².
     fn squared_error(&self, [p, rubbing]: [f64; 2], u: [f64; 2], compressive: bool) -> f64 {
         let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
-        let rubs = if compressive { (p - cohesion_impulse).max(0.0) } else { p.max(0.0) };
+        let rubs =
+            if compressive { (p - cohesion_impulse).positive_part() } else { p.positive_part() };
         let bound = friction * rubs;
         // Impulses that have outgrown all numbers have none where there is no friction.
         if bound.is_nan() {
             return f64::NAN;
         }
-        let normal_error = p - (p - u[0] / normal).max(0.0);
+        let normal_error = p - (p - u[0] / normal).positive_part();
         let tangential_error = rubbing - (rubbing - u[1] / tangential).clamp(-bound, bound);
         normal_error * normal_error + tangential_error * tangential_error
     }
@@ -322,7 +324,7 @@ impl ContactSystem for DelassusProblem {
         let row = &self.rows[contact];
         let shift =
             if self.compressive_cone { row.root() * row.local.cohesion_impulse } else { 0.0 };
-        row.local.friction * (normal - shift).max(0.0)
+        row.local.friction * (normal - shift).positive_part()
     }
 
     /// With E the diagonal of A, a row of E^−½ A E^−½ has absolute entries whose sum dominates its

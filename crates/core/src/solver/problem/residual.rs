@@ -25,6 +25,7 @@ use std::ops::Range;
 
 use super::{FrictionProjection, Row, StepProblem, squared_impulse, with_projection};
 use crate::contact::{ContactLaw, Lanes, law};
+use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 use crate::threads;
@@ -356,7 +357,7 @@ impl GapSums {
         let [normal, across] = motion.now;
         let opening = normal + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
         let least = if on_cone { problem.law.friction * across.abs() } else { 0.0 };
-        let lacking = (least - opening).max(0.0);
+        let lacking = (least - opening).positive_part();
         let mut of_contact = shifted * (opening + 2.0 * lacking) + lacking * lacking;
         if M::FRICTION {
             of_contact += tangential * across;

@@ -19,6 +19,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::range::{Bond, OpeningMotion};
+use crate::number::Parts;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
@@ -156,7 +157,7 @@ fn update_bonds<M: Model>(
         let was_alive = bond.alive;
         if bond.alive && row.shifted_impulse <= 0.0 {
             let opened = bond.stretch + opens.part * opening_speed * time_step_secs;
-            bond.stretch = opened.max(0.0);
+            bond.stretch = opened.positive_part();
             let broken = problem.capture(number) < opens.part * problem.law.capture_speed();
             bond.alive = !broken && bond.stretch < debonding_distance;
         }
@@ -231,7 +232,7 @@ impl BondLimits<'_> {
             let bond = self.bonds[problem.rows.contacts[number] as usize];
             let opens = BondOpening::of(problem, number, &motion, self.shocks);
             let stretch = if opens.is_closed { 0.0 } else { bond.stretch };
-            let left = (debonding_distance - stretch).max(0.0);
+            let left = (debonding_distance - stretch).positive_part();
             let opening = OpeningMotion { left, speed: opens.speed, load: opens.load };
             let capture_speed = strength * opens.part * problem.law.capture_speed();
             let bound = opening.bound(capture_speed, opens.part * time_step_secs);
@@ -247,7 +248,7 @@ fn shorten<M: Model>(problem: &mut StepProblem<M>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.rows.captures[number], bound);
         let row = problem.rows.get_mut(number);
-        row.shifted_impulse = (row.shifted_impulse - before + bound).max(0.0);
+        row.shifted_impulse = (row.shifted_impulse - before + bound).positive_part();
     }
     problem.form_velocities();
 }

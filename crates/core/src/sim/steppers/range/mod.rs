@@ -23,6 +23,7 @@ use crate::contact::law::cohesion_force;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
 use crate::contact::{InTouch, LookAhead, Numbering, Other};
 use crate::error::Error;
+use crate::number::Parts;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::solve_range;
@@ -166,7 +167,7 @@ pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let time_step_secs = settings.parameters.time_step_secs;
     let touch = TOUCH_IN_DIAMETERS * stage.world().mean_diameter;
     let ahead = |state: &State| Some(look_ahead(state, time_step_secs));
-    let rebound = |Approach { gap, .. }| (gap - touch).max(0.0) / time_step_secs;
+    let rebound = |Approach { gap, .. }| (gap - touch).positive_part() / time_step_secs;
     stage.prepare_ahead(settings, ahead, rebound);
 }
 

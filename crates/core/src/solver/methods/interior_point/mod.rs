@@ -43,6 +43,7 @@ use self::system::StepMatrix;
 use super::nsgs::{settles_in, solve_models};
 use super::stopping::SolveReport;
 use crate::contact::law;
+use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::linear::ContactGraph;
 use crate::solver::problem::{Bodies, StepProblem, natural_map, velocity_error};
@@ -345,7 +346,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
                 row.shifted_impulse - normal - (row.restitution_velocity + extra),
                 row.tangential_impulse - compliance * tangential,
             ];
-            squares += (row.shifted_impulse - trial[0].max(0.0)).powi(2);
+            squares += (row.shifted_impulse - trial[0].positive_part()).powi(2);
             if M::FRICTION {
                 let allowed = if S::CONE || S::LEANS {
                     problem.law.friction * row.shifted_impulse

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, along_normal, grains};
 use crate::contact::{Candidates, ContactList, Impulse};
+use crate::number::Parts;
 use crate::sim::steppers::range::StepNumbers;
 use crate::solver::{Model, StepProblem};
 use crate::world::World;
@@ -57,10 +58,10 @@ impl Shocks {
                 Some(normal) => problem.turn_row(number, normal),
                 None => problem.wall_speed(number),
             };
-            problem.let_close(number, allowed.max(0.0), wall_speed);
+            problem.let_close(number, allowed.positive_part(), wall_speed);
             let row = problem.rows.get_mut(number);
             if let Some([before, after]) = capture {
-                row.shifted_impulse = (row.shifted_impulse - before + after).max(0.0);
+                row.shifted_impulse = (row.shifted_impulse - before + after).positive_part();
                 problem.rows.captures[number] = after;
             }
         }
@@ -86,7 +87,7 @@ impl Shocks {
         let left = 1.0 - pair.struck_at / secs;
         let mut allowed = (pair.gap + pair.shift - touch) / secs + rest;
         if self.acts_late(number, i, j) {
-            allowed = left * rest.max(0.0);
+            allowed = left * rest.positive_part();
         }
         let mut normal = None;
         if pair.next == NextImpact::Never && pair.speed + allowed < 0.0 {
@@ -96,7 +97,7 @@ impl Shocks {
             {
                 normal = Some(at_end);
                 let velocity = self.course(problem, number).velocity_at(secs);
-                allowed = gap.max(0.0) / secs - at_end.dot(velocity);
+                allowed = gap.positive_part() / secs - at_end.dot(velocity);
             } else if pair.speed > 0.0 {
                 allowed = -pair.speed;
             }

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::{NEVER, NextImpact, Role, Shocks, Touch, along_axes, along_normal, grains, scale};
+use crate::number::Parts;
 use crate::sim::stepping::StepResult;
 use crate::solver::{
     FrictionModel, Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
@@ -109,7 +110,7 @@ impl Shocks {
             closing = -squared.sqrt();
         }
         pair.gained = gained;
-        self.fastest = self.fastest.max(-closing);
+        self.fastest = self.fastest.max((-closing).positive_part());
         let bounce = if closing < 0.0 {
             numbers.rebound(closing)
         } else {

@@ -45,6 +45,7 @@ fn name(path: &Path) -> &str {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     let folder = folder();
     let mut robot = open(folder.path());
@@ -81,6 +82,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn compared_worlds_are_one_picture() {
     let folder = folder();
     let mut robot = open(folder.path());
@@ -103,6 +105,7 @@ fn compared_worlds_are_one_picture() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn a_table_stays_plain_and_a_text_beside_it_says_what_it_is_of() {
     let folder = folder();
     let mut robot = open(folder.path());

@@ -5,83 +5,10 @@ use std::io::BufReader;
 use image::codecs::gif::GifDecoder;
 use image::{AnimationDecoder, Frame, RgbaImage};
 
-use crate::probed::probe;
 use crate::robot::*;
 
 fn film(robot: &mut Robot) -> (PathBuf, String) {
     made(robot, "Save video")
-}
-
-#[test]
-fn the_record_is_a_video_at_the_pace_of_time() {
-    let folder = folder();
-    // A side that is odd is one pixel longer.
-    let mut robot = open(folder.path(), [161, 100]);
-    robot.take_steps(200);
-    // Where the timeline stands is no matter.
-    robot.seek(0.05);
-    let (path, told) = film(&mut robot);
-    assert!(told.ends_with(" of 6 pictures"), "0 to 0.2 s at 25 a second: {told}");
-    let video = probe(&path);
-    assert_eq!((video.pictures, &*video.rate_hz, video.size), (6, "25/1", [162, 100]));
-    let lines = video.comment;
-    assert!(lines.contains("Command line: slump --headless "), "{lines}");
-    assert!(lines.contains("--duration 0.2"), "{lines}");
-    // The same record makes the same file, and ten times slower ten times as many pictures.
-    let (again, _) = film(&mut robot);
-    assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
-    let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Film");
-    assert_eq!(field.accesskit_node().numeric_value(), Some(25.0));
-    assert!(robot.shows("at the pace of watching, 1×"));
-    robot.state_mut().preferences.video_rate_hz = 50.0;
-    robot.state_mut().preferences.speed = 0.1;
-    let (slow, _) = film(&mut robot);
-    assert_eq!(probe(&slow).pictures, 101);
-}
-
-#[test]
-fn compared_worlds_stand_side_by_side_in_one_video() {
-    let folder = folder();
-    let mut robot = open(folder.path(), [240, 120]);
-    robot.state_mut().preferences.style.colour_by = slump::render::ColourBy::Speed;
-    let base = robot.settings();
-    // The second steps so far that pictures show some of its moments twice.
-    robot.send(Command::Compare(vec![base.over(1e-3), base.over(5e-3)]));
-    robot.take_steps(20);
-    robot.state_mut().preferences.video_rate_hz = 240.0;
-    let (path, _) = film(&mut robot);
-    let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
-    assert!(name.starts_with("slump-pile-2worlds-"), "{name}");
-    assert_eq!(probe(&path).pictures, 25);
-}
-
-#[test]
-fn a_video_that_is_stopped_leaves_nothing_and_the_run_goes_on_meanwhile() {
-    let folder = folder();
-    let mut robot = open(folder.path(), [640, 400]);
-    robot.take_steps(300);
-    robot.state_mut().preferences.video_rate_hz = 240.0;
-    robot.state_mut().preferences.speed = 0.1;
-    robot.click("Save video");
-    assert!(robot.harness.query_by_label("Save video").is_none(), "one at a time");
-    let before = robot.steps();
-    robot.take_steps(3);
-    assert!(robot.state().is_writing() && robot.steps() == before + 3, "the run goes on");
-    robot.click("Stop video");
-    assert_eq!(robot.written(), "Stopped: there is no video");
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
-    assert!(robot.harness.query_by_label("Save video").is_some(), "another can be asked for");
-}
-
-#[test]
-fn a_place_that_takes_no_video_is_named() {
-    let folder = folder();
-    let file = folder.path().join("file");
-    write(&file, "");
-    let mut robot = open(&file.join("below"), [160, 100]);
-    robot.click("Save video");
-    let told = robot.written();
-    assert!(told.contains("folder is") && told.contains("can be written to"), "{told}");
 }
 
 /// A window whose pictures are so large.
@@ -142,6 +69,7 @@ fn comment(gif: &[u8]) -> String {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn the_record_is_an_animation_at_the_pace_of_time() {
     let folder = folder();
     let mut robot = open(folder.path(), [161, 100]);
@@ -164,6 +92,7 @@ fn the_record_is_an_animation_at_the_pace_of_time() {
 /// What a file cannot say is not asked of it: pictures follow each other by whole hundredths of a second, and by no
 /// fewer than two; the pace of time stays that which was asked for.
 #[test]
+#[ignore = "needs a graphics driver"]
 fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {
     let folder = folder();
     let mut robot = open(folder.path(), [161, 100]);
@@ -178,6 +107,7 @@ fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn an_animation_that_is_stopped_leaves_nothing() {
     let folder = folder();
     let mut robot = open(folder.path(), [640, 400]);
@@ -186,4 +116,86 @@ fn an_animation_that_is_stopped_leaves_nothing() {
     robot.clicks(&["Save GIF", "Stop GIF"]);
     assert_eq!(robot.written(), "Stopped: there is no GIF");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+mod with_ffmpeg {
+    use crate::probed::probe;
+
+    use super::*;
+
+    #[test]
+    #[ignore = "needs ffmpeg and a graphics driver"]
+    fn the_record_is_a_video_at_the_pace_of_time() {
+        let folder = folder();
+        // A side that is odd is one pixel longer.
+        let mut robot = open(folder.path(), [161, 100]);
+        robot.take_steps(200);
+        // Where the timeline stands is no matter.
+        robot.seek(0.05);
+        let (path, told) = film(&mut robot);
+        assert!(told.ends_with(" of 6 pictures"), "0 to 0.2 s at 25 a second: {told}");
+        let video = probe(&path);
+        assert_eq!((video.pictures, &*video.rate_hz, video.size), (6, "25/1", [162, 100]));
+        let lines = video.comment;
+        assert!(lines.contains("Command line: slump --headless "), "{lines}");
+        assert!(lines.contains("--duration 0.2"), "{lines}");
+        // The same record makes the same file, and ten times slower ten times as many pictures.
+        let (again, _) = film(&mut robot);
+        assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
+        let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Film");
+        assert_eq!(field.accesskit_node().numeric_value(), Some(25.0));
+        assert!(robot.shows("at the pace of watching, 1×"));
+        robot.state_mut().preferences.video_rate_hz = 50.0;
+        robot.state_mut().preferences.speed = 0.1;
+        let (slow, _) = film(&mut robot);
+        assert_eq!(probe(&slow).pictures, 101);
+    }
+
+    #[test]
+    #[ignore = "needs ffmpeg and a graphics driver"]
+    fn compared_worlds_stand_side_by_side_in_one_video() {
+        let folder = folder();
+        let mut robot = open(folder.path(), [240, 120]);
+        robot.state_mut().preferences.style.colour_by = slump::render::ColourBy::Speed;
+        let base = robot.settings();
+        // The second steps so far that pictures show some of its moments twice.
+        robot.send(Command::Compare(vec![base.over(1e-3), base.over(5e-3)]));
+        robot.take_steps(20);
+        robot.state_mut().preferences.video_rate_hz = 240.0;
+        let (path, _) = film(&mut robot);
+        let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
+        assert!(name.starts_with("slump-pile-2worlds-"), "{name}");
+        assert_eq!(probe(&path).pictures, 25);
+    }
+
+    #[test]
+    #[ignore = "needs ffmpeg and a graphics driver"]
+    fn a_video_that_is_stopped_leaves_nothing_and_the_run_goes_on_meanwhile() {
+        let folder = folder();
+        let mut robot = open(folder.path(), [640, 400]);
+        robot.take_steps(300);
+        robot.state_mut().preferences.video_rate_hz = 240.0;
+        robot.state_mut().preferences.speed = 0.1;
+        robot.click("Save video");
+        assert!(robot.harness.query_by_label("Save video").is_none(), "one at a time");
+        let before = robot.steps();
+        robot.take_steps(3);
+        assert!(robot.state().is_writing() && robot.steps() == before + 3, "the run goes on");
+        robot.click("Stop video");
+        assert_eq!(robot.written(), "Stopped: there is no video");
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+        assert!(robot.harness.query_by_label("Save video").is_some(), "another can be asked for");
+    }
+
+    #[test]
+    #[ignore = "needs ffmpeg and a graphics driver"]
+    fn a_place_that_takes_no_video_is_named() {
+        let folder = folder();
+        let file = folder.path().join("file");
+        write(&file, "");
+        let mut robot = open(&file.join("below"), [160, 100]);
+        robot.click("Save video");
+        let told = robot.written();
+        assert!(told.contains("folder is") && told.contains("can be written to"), "{told}");
+    }
 }

@@ -1,4 +1,4 @@
-//! Every renderer draws the same picture.
+//! Every renderer draws the same picture. These tests need a graphics driver.
 
 use image::RgbaImage;
 use rand::{RngExt, SeedableRng};
@@ -81,6 +81,7 @@ fn random_picture(seed: u64, width: u32, height: u32, count: usize) -> Picture {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn random_primitives_agree() {
     for seed in 0..6 {
         assert_agreement(&random_picture(seed, 301, 203, 60), 301, 203);
@@ -88,6 +89,7 @@ fn random_primitives_agree() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn an_empty_picture_is_its_ground() {
     let picture = Picture::new(Colour::hex(0x1180fe));
     let mut renderers = gpus();
@@ -100,6 +102,7 @@ fn an_empty_picture_is_its_ground() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn a_renderer_draws_pictures_of_changing_size() {
     for mut renderer in gpus() {
         for (width, height) in [(64, 48), (65, 33), (64, 48)] {
@@ -111,6 +114,7 @@ fn a_renderer_draws_pictures_of_changing_size() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn impossible_sizes_are_named() {
     let picture = Picture::new(Colour::WHITE);
     let mut renderers = gpus();
@@ -126,6 +130,7 @@ fn impossible_sizes_are_named() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn links_and_discs_thinner_than_a_pixel_fade() {
     let mut picture = Picture::new(Colour::WHITE);
     let across = |y, half_width| LinkInstance {

@@ -1,6 +1,6 @@
 //! What the panels look like at the start, before the first step: what is solved how changes nothing.
 
-#[path = "../pictures/golden/compare.rs"]
+#[path = "../../pictures/golden/compare.rs"]
 mod compare;
 
 use crate::robot::*;
@@ -23,11 +23,13 @@ fn check(robot: &mut Robot, name: &str) {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn the_first_thing_that_a_newcomer_sees() {
     check(&mut Robot::open_with_gpu(Config::default(), Preferences::default()), "window-first");
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn worlds_side_by_side_in_the_dark() {
     let mut preferences =
         Preferences { theme: egui::ThemePreference::Dark, ..Preferences::default() };
@@ -38,6 +40,7 @@ fn worlds_side_by_side_in_the_dark() {
 }
 
 #[test]
+#[ignore = "needs a graphics driver"]
 fn the_panels_of_a_physicist() {
     let preferences = Preferences { plots: false, ..Preferences::default() };
     let mut robot = Robot::open_with_gpu(Config::default(), preferences);
