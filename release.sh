@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # A release in a folder: ./release.sh [FOLDER]. Archives of the program for Linux on x86-64 and aarch64 and, as an experiment,
-# for Windows on x86-64; the page; a Python wheel; their checksums. Each is tried where nothing of this project is: in a root
-# of Debian 11, by qemu and by wine. FOLDER is target/release-archive unless it is given, and is made anew.
+# for Windows on x86-64; the page; a Python wheel; their checksums. The script tries each outside of this project: in a root of
+# Debian 11, under qemu and under wine. FOLDER is target/release-archive by default; an earlier release in it is replaced.
 #
-# It installs what it needs on Debian 12: compilers, wine and qemu by apt, zig and maturin by pip, wasm-bindgen by cargo.
+# On Debian 12 the script installs the tools it needs: compilers, wine and qemu by apt, zig and maturin by pip, wasm-bindgen by
+# cargo.
 set -euo pipefail
 cd "$(dirname "$0")"
 out=$(realpath -m "${1:-target/release-archive}")
@@ -25,8 +26,7 @@ export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
 commit=$(git rev-parse --short HEAD)
 secs=$(git log -1 --format=%ct)
 
-# Tools. Debian's compiler comes with the sources of the standard library, which is built with the program where the target is
-# another system.
+# Tools. Debian's compiler has the sources of the standard library, which is built with the program for another system.
 as_root=()
 [ "$(id -u)" -eq 0 ] || as_root=(sudo)
 "${as_root[@]}" apt-get install -y -q --no-install-recommends rustc-web cargo-web rust-web-src lld gcc-mingw-w64-x86-64 \
@@ -41,7 +41,7 @@ debian() {
     RUSTC_BOOTSTRAP=1 PATH=/usr/bin:$PATH CARGO_TARGET_DIR=$CARGO_TARGET_DIR/debian cargo "$@"
 }
 
-# The programs, which say what they are made of. Zig links to the oldest glibc that Rust's own library knows.
+# The programs. Each prints the commit that it is built from. glibc 2.17 is the oldest that Rust's standard library supports.
 touch build.rs
 intel=x86_64-unknown-linux-gnu arm=aarch64-unknown-linux-gnu windows=x86_64-pc-windows-gnu
 cargo zigbuild --release --locked --target $intel.2.17
@@ -100,7 +100,7 @@ print("\n".join(sorted(crates)))
 for text, names in texts.items():
     print("\n" + "-" * 80 + "\n" + ", ".join(names) + "\n\n" + text)
 PYTHON
-# pack FOLDER FILE: a folder of $work as an archive that depends on nothing but what is in it.
+# pack FOLDER FILE: packs a folder of $work into an archive whose bytes depend on the content only.
 pack() {
     tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$secs" -c "$1" | gzip -9n >"$out/$2"
 }
@@ -127,7 +127,7 @@ wheels=("$out"/slump-"$version"-*abi3*.whl)
 
 (cd "$out" && sha256sum -- * >SHA256SUMS && sha256sum --check --quiet SHA256SUMS) || fail "the checksums do not hold"
 
-# The archive, tried where nothing is but it: no variables, and Debian 11.
+# The archive, tried without any variable of the environment, and on Debian 11.
 tried=$work/tried
 mmdebstrap --quiet --variant=essential bullseye "$tried" 2>"$work/log" || { cat "$work/log"; fail "there is no Debian 11 to try it in"; }
 mkdir -p "$tried/tmp"
@@ -144,11 +144,11 @@ for folder in plain old; do
 done
 bash -n "$tried/$name/completions/slump.bash" || fail "the completions are no bash"
 
-# The programs for other systems: the same bits, and what Windows does in its own way.
+# The programs for other systems: the same bits, and the parts of the system that Windows has in its own form.
 tests/windows.sh "${programs[$windows]}"
 tests/bits.sh "$program" "qemu-aarch64 -L /usr/aarch64-linux-gnu ${programs[$arm]}" "tests/windows.sh --run ${programs[$windows]}"
 
-# The wheel, tried where neither Rust nor an index of packages is.
+# The wheel, tried without Rust and without an index of packages.
 python=$(python3 -c 'import sys; print(getattr(sys, "_base_executable", sys.executable))')
 mkdir "$work/home" "$work/no-programs"
 clean=(env -i PATH="$work/no-programs" HOME="$work/home")

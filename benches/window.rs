@@ -29,7 +29,7 @@ const REPEATS: usize = 3;
 /// Steps of the pile that other piles are computed beside, at 1e-3 s, and how often.
 const COLLAPSE: u64 = 900;
 const TURNS: usize = 10;
-/// Frames of which the fastest tells what panels take.
+/// Frames that are timed; the fastest counts.
 const FRAMES: usize = 100;
 /// Changes of the time step whose latency is measured.
 const CHANGES: usize = 40;
@@ -73,7 +73,7 @@ impl Window {
         }
     }
 
-    /// Least time that the panels and their triangles take of a frame, without a pixel being drawn, ms.
+    /// Time to lay out the panels and make their triangles, without drawing a pixel, ms: the least of all repeats.
     fn panels(&mut self) -> f64 {
         let Self { state, context, .. } = self;
         let size = egui::vec2(SIZE[0] as f32, SIZE[1] as f32);
