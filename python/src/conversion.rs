@@ -3,8 +3,8 @@
 
 use numpy::ndarray::Dimension;
 use numpy::{
-    AllowTypeChange, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayLike2,
-    PyArrayMethods,
+    Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn,
+    PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
@@ -62,20 +62,35 @@ pub(crate) fn rows<const N: usize>(
     rows.flatten().collect::<Vec<_>>().into_pyarray(py).reshape(shape).map(read_only)
 }
 
-/// The vectors of an array that a user gives, two numbers a row.
+/// An array of numbers, of anything that numpy makes an array of. Words, complex numbers and masked arrays are refused:
+/// numpy would drop a part of them.
+pub(crate) fn numbers<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let numpy = given.py().import("numpy")?;
+    let array = numpy.call_method1("asarray", (given,))?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    let is_masked = numpy.getattr("ma")?.call_method1("is_masked", (given,))?.is_truthy()?;
+    if given.is_none() || is_masked || !"biufO".contains(&kind) {
+        return Err(PyTypeError::new_err("not an array of real numbers"));
+    }
+    Ok(array.call_method1("astype", ("float64",))?.extract()?)
+}
+
+/// The vectors of an array that a user gives, one row of two numbers per grain.
 pub(crate) fn vectors<V: From<[f64; 2]>>(
     name: &str,
-    given: &PyArrayLike2<'_, f64, AllowTypeChange>,
+    given: &Bound<'_, PyAny>,
+    grains: usize,
 ) -> PyResult<Vec<V>> {
-    let given = given.as_array();
-    if given.ncols() != 2 {
-        return Err(refused(
-            format!("{name}.shape"),
-            format!("{:?}", given.shape()),
-            "(grains, 2)",
-        ));
+    let allowed = format!("({grains}, 2), one row of two numbers per grain");
+    let numbers = numbers(given).map_err(|_| {
+        refused(name, given.get_type(), format!("an array of numbers of shape {allowed}"))
+    })?;
+    if numbers.shape() != [grains, 2] {
+        let shape = numbers.getattr("shape")?;
+        return Err(refused(format!("{name}.shape"), shape, allowed));
     }
-    Ok(given.rows().into_iter().map(|row| [row[0], row[1]].into()).collect())
+    let numbers = numbers.as_array();
+    Ok(numbers.rows().into_iter().map(|row| [row[0], row[1]].into()).collect())
 }
 
 /// Smoothed fields as a dictionary of arrays.

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{AllowTypeChange, PyArray2, PyArrayLike2};
+use numpy::PyArray2;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
@@ -66,6 +67,11 @@ impl Simulation {
 
     pub(crate) fn run(&self, py: Python<'_>) -> MutexGuard<'_, Run> {
         self.run.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Number of grains.
+    fn count(&self, py: Python<'_>) -> usize {
+        self.run(py).simulation.world().grains.len()
     }
 
     /// What went wrong since the last call: its kind, and a sentence.
@@ -242,22 +248,14 @@ impl Simulation {
     }
 
     /// Sets the centres of all grains, m: a row a grain. Velocities stay, and so does what the last step measured.
-    fn set_positions(
-        &self,
-        py: Python<'_>,
-        positions: PyArrayLike2<'_, f64, AllowTypeChange>,
-    ) -> PyResult<()> {
-        let positions: Vec<_> = vectors("positions", &positions)?;
+    fn set_positions(&self, py: Python<'_>, positions: &Bound<'_, PyAny>) -> PyResult<()> {
+        let positions: Vec<_> = vectors("positions", positions, self.count(py))?;
         self.run(py).simulation.set_positions(&positions).map_err(exception)
     }
 
     /// Sets the velocities of all grains, m/s: a row a grain. What the last step measured stays.
-    fn set_velocities(
-        &self,
-        py: Python<'_>,
-        velocities: PyArrayLike2<'_, f64, AllowTypeChange>,
-    ) -> PyResult<()> {
-        let velocities: Vec<_> = vectors("velocities", &velocities)?;
+    fn set_velocities(&self, py: Python<'_>, velocities: &Bound<'_, PyAny>) -> PyResult<()> {
+        let velocities: Vec<_> = vectors("velocities", velocities, self.count(py))?;
         self.run(py).simulation.set_velocities(&velocities).map_err(exception)
     }
 
@@ -298,12 +296,8 @@ impl Simulation {
     }
 
     #[setter]
-    fn set_body_forces(
-        &self,
-        py: Python<'_>,
-        forces: PyArrayLike2<'_, f64, AllowTypeChange>,
-    ) -> PyResult<()> {
-        let forces: Vec<_> = vectors("body_forces", &forces)?;
+    fn set_body_forces(&self, py: Python<'_>, forces: &Bound<'_, PyAny>) -> PyResult<()> {
+        let forces: Vec<_> = vectors("body_forces", forces, self.count(py))?;
         self.run(py).simulation.set_body_forces(&forces).map_err(exception)
     }
 

@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use numpy::{AllowTypeChange, PyArrayLike1};
+use numpy::PyUntypedArrayMethods;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-use crate::conversion::{InputError, data_of, exception, refused, text_of};
+use crate::conversion::{InputError, data_of, exception, numbers, refused, text_of};
 use crate::options::{GivenOptions, all_names};
 use crate::run::Run;
 use slump_core::error::{Error, with_allowed};
@@ -151,6 +151,11 @@ fn names_of(table: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     })
 }
 
+/// The entries of a list, each of one type.
+fn each_of<T: for<'a, 'py> FromPyObject<'a, 'py>>(list: &Bound<'_, PyAny>) -> PyResult<Vec<T>> {
+    list.try_iter()?.map(|entry| entry?.extract().map_err(Into::into)).collect()
+}
+
 fn values_of(name: &str, column: &Bound<'_, PyAny>) -> PyResult<Values> {
     let refuse = |allowed: &str| {
         let found = column.get_type();
@@ -158,23 +163,21 @@ fn values_of(name: &str, column: &Bound<'_, PyAny>) -> PyResult<Values> {
     };
     match name {
         "kind" => {
-            let words: PyResult<Vec<String>> =
-                column.try_iter()?.map(|word| word?.extract()).collect();
-            let words = words.map_err(|_| refuse("a list of words"))?;
+            let words: Vec<String> =
+                each_of(column).map_err(|_: PyErr| refuse("a list of words"))?;
             Ok(Values::Words { codes: (0..words.len() as u32).collect(), words })
         }
         "id" => {
-            let counts: PyResult<Vec<u64>> =
-                column.try_iter()?.map(|count| count?.extract()).collect();
-            counts.map(Values::Counts).map_err(|_| refuse("a list of whole numbers ≥ 0"))
+            each_of(column).map(Values::Counts).map_err(|_| refuse("a list of whole numbers ≥ 0"))
         }
         // As long as it is, but not read, whatever it holds.
         name if !RecordedGrains::NUMBERS.contains(&name) => {
-            Ok(Values::Flags(vec![None; column.len()?]))
+            let rows = column.len().map_err(|_| refuse("a list"))?;
+            Ok(Values::Flags(vec![None; rows]))
         }
         _ => {
-            let numbers: PyResult<PyArrayLike1<'_, f64, AllowTypeChange>> = column.extract();
-            let numbers = numbers.map_err(|_| refuse("a list of numbers"))?;
+            let numbers = numbers(column).ok().filter(|numbers| numbers.ndim() == 1);
+            let numbers = numbers.ok_or_else(|| refuse("a list of numbers"))?;
             Ok(Values::Numbers(numbers.as_array().iter().copied().collect()))
         }
     }

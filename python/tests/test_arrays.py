@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import copy
 import pickle
+from typing import Any
 
 import numpy as np
 import pandas as pd
+import polars as pl
 import pytest
 
 import slump
@@ -151,8 +153,8 @@ def test_grains_are_put_elsewhere_and_pushed(sim: slump.Simulation) -> None:
     assert other.velocities[low, 1] == pytest.approx(-secs * other.gravity) or other.observables["contacts"] > 0
     assert (other.positions[:, 1] > 45.0).all() and bond > 0
     for name, given, sentence in [
-        ("positions", up[:-1], "positions is 137, but must be 138, one a grain"),
-        ("positions", up[:, :1], r"positions.shape is \[138, 1\], but must be \(grains, 2\)"),
+        ("positions", up[:-1], r"positions.shape is \(137, 2\), but must be \(138, 2\), one row of two numbers per grain"),
+        ("positions", up.T, r"positions.shape is \(2, 138\), but must be \(138, 2\)"),
         ("positions", np.zeros_like(up), r"grains\[\d+\].position is "),
         ("velocities", np.full_like(up, np.nan), r"velocities\[0\] is \[NaN, NaN\], but must be finite"),
     ]:
@@ -203,14 +205,56 @@ def test_body_forces_are_held_and_close_energies() -> None:
     sim.remove_grain(7)
     np.testing.assert_array_equal(sim.body_forces, np.delete(forces, 7, axis=0))
     for given, sentence in [
-        (forces, "body_forces is 138, but must be 137, one a grain"),
-        (forces[:, :1], r"body_forces.shape is \[138, 1\], but must be \(grains, 2\)"),
+        (forces, r"body_forces.shape is \(138, 2\), but must be \(137, 2\), one row of two numbers per grain"),
+        (forces[:, :1], r"body_forces.shape is \(138, 1\), but must be \(137, 2\)"),
         (np.full((137, 2), np.nan), r"body_forces\[0\] is \[NaN, NaN\], but must be finite"),
     ]:
         with pytest.raises(slump.InputError, match=sentence):
             sim.body_forces = given
     sim.body_forces = np.zeros((137, 2))
     assert not sim.body_forces.any()
+
+
+VECTORS: list[tuple[Any, str]] = [
+    ([0, -1], "{name}.shape is (2,), but must be (138, 2), one row of two numbers per grain"),
+    (1.5, "{name}.shape is (), but must be (138, 2), one row of two numbers per grain"),
+    (np.zeros((138, 2, 1)), "{name}.shape is (138, 2, 1), but must be (138, 2), one row of two numbers per grain"),
+    (pl.DataFrame({"x": [1.0], "y": [2.0]}), "{name}.shape is (1, 2), but must be (138, 2), one row"),
+    (None, "{name} is <class 'NoneType'>, but must be an array of numbers of shape (138, 2), one row"),
+    ("up", "{name} is <class 'str'>, but must be an array of numbers of shape (138, 2), one row"),
+    ([[0.0, 1.0], [2.0]], "{name} is <class 'list'>, but must be an array of numbers of shape (138, 2), one row"),
+    (iter([1.0]), "{name} is <class 'list_iterator'>, but must be an array of numbers of shape (138, 2), one row"),
+    (np.zeros((138, 2), dtype=complex), "{name} is <class 'numpy.ndarray'>, but must be an array of numbers of shape"),
+    (np.full((138, 2), "1"), "{name} is <class 'numpy.ndarray'>, but must be an array of numbers of shape"),
+    (np.ma.masked_all((138, 2)), "{name} is <class 'numpy.ma.MaskedArray'>, but must be an array of numbers of shape"),
+]
+
+
+@pytest.mark.parametrize("given, sentence", VECTORS, ids=lambda part: type(part).__name__)
+def test_vectors_of_another_form_are_told(given: Any, sentence: str) -> None:
+    sim = slump.Simulation("pile")
+    setters = {
+        "positions": sim.set_positions,
+        "velocities": sim.set_velocities,
+        "body_forces": lambda forces: setattr(sim, "body_forces", forces),
+    }
+    for name, setter in setters.items():
+        with pytest.raises(slump.InputError) as refused:
+            setter(given)
+        assert str(refused.value).startswith(sentence.format(name=name))
+
+
+def test_vectors_come_in_any_layout() -> None:
+    sim = slump.Simulation("pile")
+    speeds = np.arange(276.0).reshape(138, 2)
+    wide = np.zeros((276, 4))
+    wide[::2, 1:3] = speeds
+    layouts = [np.asfortranarray(speeds), wide[::2, 1:3], speeds.astype(np.float32), speeds.astype(">f8"), speeds.astype(int),
+               speeds.tolist(), pd.DataFrame(speeds), pl.DataFrame(speeds), speeds.astype(object)]  # fmt: skip
+    for layout in layouts:
+        sim.set_velocities(np.zeros_like(speeds))
+        sim.set_velocities(layout)
+        np.testing.assert_array_equal(sim.velocities, speeds)
 
 
 def test_pairs_have_the_means_since_they_were_begun(sim: slump.Simulation) -> None:
