@@ -1,6 +1,7 @@
 //! A simulation with what is kept of its steps.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process;
 use std::time::{Duration, Instant};
 
 use slump_core::error::{Error, Result};
@@ -26,8 +27,8 @@ pub(crate) struct Run {
     pub sums: Option<ForceSums>,
     /// Sums over all of its steps.
     tally: Tally,
-    /// Where it is recorded, if it is.
-    pub recording: Option<Recording>,
+    /// Where it is recorded, if it is, and the process that began to record it.
+    recording: Option<(u32, Recording)>,
     /// How many alarms have been told of.
     alarms_told: usize,
 }
@@ -91,13 +92,28 @@ impl Run {
             Recording::start(folder, &formats_of(settings)?, &scene_facts(&now)?, overwrite)?;
         let mut recording = recording.at(Times::of(settings), &self.simulation);
         recording.add_if_due(&self.simulation)?;
-        self.recording = Some(recording);
+        self.recording = Some((process::id(), recording));
         Ok(())
     }
 
     /// Ends its recording, if there is one.
     pub(crate) fn end_recording(&mut self) -> Result<()> {
-        self.recording.take().map_or(Ok(()), Recording::finish)
+        self.leave_recording_to_parent();
+        self.recording.take().map_or(Ok(()), |(_, recording)| recording.finish())
+    }
+
+    /// The folder that it is recorded in, if it is.
+    pub(crate) fn recording_folder(&mut self) -> Option<PathBuf> {
+        self.leave_recording_to_parent();
+        self.recording.as_ref().map(|(_, recording)| recording.folder().to_owned())
+    }
+
+    /// Forgets a recording that another process began, from which this process was forked. The thread that writes
+    /// the recording exists in that process alone, and the folder is locked for it: not even a destructor may run here.
+    fn leave_recording_to_parent(&mut self) {
+        if self.recording.as_ref().is_some_and(|(owner, _)| *owner != process::id()) {
+            std::mem::forget(self.recording.take());
+        }
     }
 
     /// Takes steps for a while, at most so many. How many that were, and what ended them early.
@@ -123,7 +139,8 @@ impl Run {
             sums.follow(&self.simulation);
         }
         self.tally.add(&row);
-        let Some(recording) = &mut self.recording else { return Ok(()) };
+        self.leave_recording_to_parent();
+        let Some((_, recording)) = &mut self.recording else { return Ok(()) };
         let mut taken = recording.add_step(&row);
         if is_finite {
             taken = taken.and_then(|()| recording.add_if_due(&self.simulation));

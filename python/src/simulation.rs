@@ -199,7 +199,8 @@ impl Simulation {
     ///
     /// `formats` are some of parquet (where nothing is said), csv, vtk, ovito and fields. An earlier recording in the
     /// folder is refused unless `overwrite` removes it. Files are written on a thread of their own; where that
-    /// fails, the recording ends, and a later step, or `end_recording`, says why.
+    /// fails, the recording ends, and a later step, or `end_recording`, says why. Copies, pickles and forked processes
+    /// are not recorded.
     #[pyo3(signature = (folder, every=0.04, formats=None, overwrite=false))]
     fn record(
         &self,

@@ -130,10 +130,10 @@ impl Simulation {
         self.run(py).alarms()
     }
 
-    /// The folder that it is recorded in, if it is.
+    /// The folder that it is recorded in, if it is; a forked process does not record the simulations of its parent.
     #[getter]
     fn recording(&self, py: Python<'_>) -> Option<PathBuf> {
-        self.run(py).recording.as_ref().map(|recording| recording.folder().to_owned())
+        self.run(py).recording_folder()
     }
 
     /// The scene's name.

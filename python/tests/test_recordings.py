@@ -177,3 +177,46 @@ def test_a_recording_that_nobody_ends_is_whole(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 0 and done.stderr == ""
     assert list(read(tmp_path / "csv" / "steps.csv")["step"]) == [1, 2, 3, 4, 5, 6, 7]
+
+
+FORKED = """
+import os, sys
+import slump
+
+folder, act = sys.argv[1:]
+sim = slump.Simulation("cradle")
+sim.record(folder, every=sim.dt, formats=["csv", "parquet", "vtk"])
+sim.step(10)
+child = os.fork()
+if child == 0:
+    if act == "drops":
+        del sim
+    elif act == "steps":
+        # More than may wait for a thread that is not there.
+        sim.step(5000)
+    elif act == "ends":
+        sim.end_recording()
+        assert sim.recording is None
+    elif act == "records":
+        sim.record(folder + "-of-child", every=sim.dt, formats=["csv"])
+        sim.step(5)
+        sim.end_recording()
+    sys.exit(7)
+_, status = os.waitpid(child, 0)
+assert os.waitstatus_to_exitcode(status) == 7
+assert str(sim.recording) == folder
+sim.step(10)
+sim.end_recording()
+"""
+
+
+@pytest.mark.parametrize("act", ["drops", "steps", "ends", "records", "exits"])
+def test_a_forked_process_leaves_the_recording_to_its_parent(tmp_path: Path, act: str) -> None:
+    folder = tmp_path / "run"
+    done = subprocess.run([sys.executable, "-c", FORKED, str(folder), act], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    assert list(read(folder / "csv" / "steps.csv")["step"]) == list(range(1, 21))
+    assert sorted(set(read(folder / "csv" / "grains.csv")["step"])) == list(range(21))
+    assert len(list((folder / "vtk").glob("grains-*.vtp")) or list((folder / "vtk").rglob("*.vtp"))) >= 21
+    if act == "records":
+        assert sorted(set(read(tmp_path / "run-of-child" / "csv" / "grains.csv")["step"])) == list(range(10, 16))
