@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::time::{Duration, Instant};
 
-use slump_core::error::{Error, Result};
+use slump_core::error::{self, Result};
 use slump_core::scene::Scene;
-use slump_core::sim::{AlarmKind, ForceSums, Observables, Simulation, Tally};
+use slump_core::sim::{Alarm, AlarmKind, ForceSums, Observables, Simulation, Tally};
 use slump_data::config::SavedState;
 use slump_data::config::scene_facts;
 use slump_data::data::{DataSettings, Recording, Times, formats_of};
@@ -51,10 +51,7 @@ impl Run {
 
     /// All of it as it is now, but for the rows of its steps.
     pub(crate) fn saved(&self) -> Result<SavedState> {
-        let gone = |kind| self.simulation.alarms().iter().any(|alarm| alarm.kind == kind);
-        if gone(AlarmKind::NotFinite) {
-            return Err(Error::value("state", "no longer finite", "finite where it is saved"));
-        }
+        self.check_finite("finite where it is saved")?;
         Ok(SavedState::new(self.scene.clone(), self.simulation.clone(), self.tally))
     }
 
@@ -68,6 +65,13 @@ impl Run {
             tally: self.tally,
             recording: None,
             alarms_told: self.alarms_told,
+    /// Refuses a state that is no longer finite.
+    fn check_finite(&self, allowed: &str) -> Result<()> {
+        let is_finite = |alarm: &Alarm| alarm.kind != AlarmKind::NotFinite;
+        let found = "no longer finite";
+        error::check(self.simulation.alarms().iter().all(is_finite), "state", found, allowed)
+    }
+
         }
     }
 
@@ -96,6 +100,7 @@ impl Run {
         Ok(())
     }
 
+        self.check_finite("finite to be recorded")?;
     /// Ends its recording, if there is one.
     pub(crate) fn end_recording(&mut self) -> Result<()> {
         self.leave_recording_to_parent();

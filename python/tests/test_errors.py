@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
 from pathlib import Path
 from typing import Any
@@ -180,6 +181,66 @@ def test_a_state_that_is_no_longer_finite_is_told_and_left_for_looking_at() -> N
             sim.step(1000)
     assert not np.isfinite(sim.observables["kinetic_energy"])
     assert sim.positions.shape == (20, 2) and len(sim.history["step"]) == sim.steps > 0
+
+def blown_up(way: str) -> slump.Simulation:
+    """A simulation that a NotFiniteError has left behind."""
+    if way == "pulled apart":
+        scene = slump.scene("column", stepper="dem", substeps=1, dt=1.0)
+        scene["gravity"]["acceleration"] = [0.0, -1e150]
+        sim = slump.Simulation(scene)
+    else:
+        sim = slump.Simulation("pile", bond=20)
+        sim.step(3)
+        sim.set_velocities(sim.velocities + 1e300)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", slump.SlumpWarning)
+        with pytest.raises(slump.NotFiniteError):
+            sim.step(1000)
+    return sim
+
+
+AFTER_THE_END: dict[str, Any] = {
+    **{name: lambda sim, _, name=name: getattr(sim, name) for name in dir(slump.Simulation) if name[0] != "_"},
+    "step": lambda sim, _: sim.step(),
+    "run": lambda sim, _: sim.run(until=sim.time + 3 * sim.dt),
+    "change": lambda sim, _: sim.change(dt=1e-4, stepper="range"),
+    "copy": lambda sim, _: sim.copy().step(),
+    "save": lambda sim, folder: sim.save(folder / "run.slump"),
+    "pickle": lambda sim, _: pickle.dumps(sim),
+    "set_positions": lambda sim, _: sim.set_positions(sim.positions),
+    "set_velocities": lambda sim, _: sim.set_velocities(0 * sim.velocities),
+    "add_grain": lambda sim, _: sim.add_grain(0.0, 5.0, 0.5 * sim.mean_diameter),
+    "remove_grain": lambda sim, _: sim.remove_grain(0),
+    "body_forces": lambda sim, _: setattr(sim, "body_forces", np.zeros_like(sim.positions)),
+    "begin_pairs": lambda sim, _: (sim.begin_pairs(), sim.pairs),
+    "fields": lambda sim, _: sim.fields(),
+    "record": lambda sim, folder: sim.record(folder, formats=["csv", "parquet", "vtk", "ovito", "fields"]),
+    "end_recording": lambda sim, _: sim.end_recording(),
+    "next_problem": lambda sim, _: slump.solve(sim.next_problem()),
+    "forget_history": lambda sim, _: sim.forget_history(),
+    "_repr_html_": lambda sim, _: sim._repr_html_(),
+    "repr": lambda sim, _: repr(sim),
+}
+
+
+@pytest.mark.filterwarnings("ignore::slump.SlumpWarning")
+@pytest.mark.parametrize("way", ["pulled apart", "thrown"])
+def test_all_can_be_asked_of_a_state_that_is_no_longer_finite(tmp_path: Path, way: str) -> None:
+    start = blown_up(way)
+    refused = {}
+    for name, ask in AFTER_THE_END.items():
+        sim = start.copy()
+        try:
+            ask(sim, tmp_path / name)
+            sim.end_recording()
+        except slump.Error as error:
+            refused[name] = str(error)
+    for name in ("fields", "save", "pickle", "record"):
+        assert "state is no longer finite, but must be finite" in refused[name]
+    assert "the state is no longer finite at step" in refused["step"]
+    assert set(refused) <= {"fields", "save", "pickle", "record", "step", "run", "copy", "next_problem", "set_positions", "add_grain", "pairs"}
+    assert not (tmp_path / "record").exists()
+
 
 
 def test_what_goes_wrong_and_goes_on_is_warned_of_once() -> None:

@@ -19,7 +19,7 @@ use glam::{DMat2, DVec2};
 
 use super::network::Network;
 use crate::error::{Error, Result};
-use crate::sim::Moment;
+use crate::sim::{GrainState, Moment};
 use crate::world::Periodic;
 
 /// Cells in a width: what is smooth over a width is resolved.
@@ -62,10 +62,18 @@ impl Fields {
     /// Fields of all grains that are not lost, smoothed by a width, m.
     ///
     /// # Errors
-    /// Where the width is none, or so small that there would be too many cells.
+    /// Where the width is none, or so small that there would be too many cells, or a number of the moment is not finite.
     pub fn of(moment: &Moment, width: f64) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
             return Err(Error::value("width", width, "a finite length > 0 in m"));
+        }
+        let is_finite = |grain: &GrainState| {
+            let energy = grain.mass * grain.velocity.length_squared();
+            grain.position.is_finite() && energy.is_finite()
+        };
+        if !moment.grains.iter().all(is_finite) {
+            let allowed = "finite to have fields";
+            return Err(Error::value("state", "no longer finite", allowed));
         }
         let network = Network::of(moment);
         let periodic = moment.surroundings.periodic.unwrap_or_default();
