@@ -160,7 +160,7 @@ import csv, sys
 import slump
 
 sim = slump.Simulation("pile", bond=20, dt=1e-3)
-sim.run(0.1)
+sim.run(until=0.1)
 with open(sys.argv[1], newline="") as file:
     *_, last = csv.DictReader(file)
 found, expected = float(sim.observables["slump"]), float(last["slump"])

@@ -43,7 +43,7 @@ class Losses:
 def lost(collapse: Collapse, duration: float) -> float:
     """Part of the contacts that are lost in the time between two looks."""
     losses = Losses()
-    collapse.simulation().run(duration, callback=losses.look, every=round(LOOK / collapse.time_step))
+    collapse.simulation().run(until=duration, callback=losses.look, every=LOOK)
     return losses.gone / losses.there
 
 

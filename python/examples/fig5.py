@@ -21,7 +21,7 @@ TIME_STEPS = [2e-4, 5e-4, 1e-3, 2e-3, 5e-3]
 def slump_and_overlap(collapse: Collapse, duration: float) -> tuple[float, float]:
     """Slump at the end, and the mean over all steps of the mean overlap of grains that touch, in d."""
     sim = collapse.simulation()
-    sim.run(duration)
+    sim.run(until=duration)
     history = sim.history
     return float(history["slump"][-1]), float(history["mean_overlap"].mean())
 

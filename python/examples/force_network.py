@@ -24,7 +24,7 @@ BOND = 50
 def held(start: dict[str, Any]) -> slump.Simulation:
     """A pile that has come to rest without its walls."""
     sim = slump.Simulation(start, bond=BOND, dt=5e-4)
-    sim.run(0.3)
+    sim.run(until=0.3)
     return sim
 
 

@@ -30,6 +30,9 @@ _Table = dict[str, npt.NDArray[Any]]
 _Path = str | PathLike[str]
 _Scene = _Path | Mapping[str, Any]
 _Initial = _Path | Mapping[str, npt.ArrayLike] | Any
+_Float = float | np.floating[Any] | np.integer[Any]
+_Int = int | np.integer[Any]
+_Bool = bool | np.bool_
 
 # Settings: written by the test that compares them with the program's (SLUMP_BLESS=1 pytest python/tests/test_types.py).
 class _Settings(TypedDict):
@@ -135,11 +138,13 @@ class Simulation(_Attributes):
         restart: _Path | None = None,
         **options: Unpack[_Options],
     ) -> Self: ...
-    def step(
-        self, steps: int = 1, callback: Callable[[Simulation], object] | None = None, every: int = 1
-    ) -> None: ...
+    def step(self, steps: _Int = 1, callback: Callable[[Simulation], object] | None = None) -> None: ...
     def run(
-        self, until: float | None = None, callback: Callable[[Simulation], object] | None = None, every: int = 1
+        self,
+        *,
+        until: _Float | None = None,
+        callback: Callable[[Simulation], object] | None = None,
+        every: _Float | None = None,
     ) -> None: ...
     def change(self, **settings: Unpack[_Changes]) -> None: ...
     def copy(self) -> Simulation: ...
@@ -159,7 +164,7 @@ class Simulation(_Attributes):
         folder: _Path,
         every: float = 0.04,
         formats: Sequence[Literal["parquet", "csv", "vtk", "ovito", "fields"]] | None = None,
-        overwrite: bool = False,
+        overwrite: _Bool = False,
     ) -> None: ...
     def end_recording(self) -> None: ...
     def next_problem(self) -> dict[str, Any]: ...
@@ -241,8 +246,8 @@ def _budget(
 def solve(
     problem: _Path | Mapping[str, Any],
     method: str = "nsgs",
-    tolerance: float = 1e-8,
-    max_sweeps: int = 1_000_000,
-    repeat: int = 1,
-    without_bodies: bool = False,
+    tolerance: _Float = 1e-8,
+    max_sweeps: _Int = 1_000_000,
+    repeat: _Int = 1,
+    without_bodies: _Bool = False,
 ) -> Solution: ...

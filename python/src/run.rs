@@ -9,7 +9,7 @@ use slump_core::scene::Scene;
 use slump_core::sim::{Alarm, AlarmKind, ForceSums, Observables, Simulation, Tally};
 use slump_data::config::SavedState;
 use slump_data::config::scene_facts;
-use slump_data::data::{DataSettings, Recording, Times, formats_of};
+use slump_data::data::{DataSettings, FrameSchedule, Recording, Times, formats_of};
 
 /// How long steps are taken before someone looks for Ctrl-C. Longer is felt when it is pressed; shorter costs
 /// more looks, each of which waits for Python's lock.
@@ -31,6 +31,16 @@ pub(crate) struct Run {
     recording: Option<(u32, Recording)>,
     /// How many alarms have been told of.
     alarms_told: usize,
+}
+
+/// Steps that were taken one after the other.
+pub(crate) struct Taken {
+    /// Their number.
+    pub steps: u64,
+    /// True if a schedule is due at the last step.
+    pub is_due: bool,
+    /// The error that ended them, if one did.
+    pub ended: Result<()>,
 }
 
 impl Run {
@@ -55,6 +65,13 @@ impl Run {
         Ok(SavedState::new(self.scene.clone(), self.simulation.clone(), self.tally))
     }
 
+    /// Refuses a state that is no longer finite.
+    fn check_finite(&self, allowed: &str) -> Result<()> {
+        let is_finite = |alarm: &Alarm| alarm.kind != AlarmKind::NotFinite;
+        let found = "no longer finite";
+        error::check(self.simulation.alarms().iter().all(is_finite), "state", found, allowed)
+    }
+
     /// A second one, which goes on as this one would, but is not recorded.
     pub(crate) fn copy(&self) -> Self {
         Self {
@@ -65,13 +82,6 @@ impl Run {
             tally: self.tally,
             recording: None,
             alarms_told: self.alarms_told,
-    /// Refuses a state that is no longer finite.
-    fn check_finite(&self, allowed: &str) -> Result<()> {
-        let is_finite = |alarm: &Alarm| alarm.kind != AlarmKind::NotFinite;
-        let found = "no longer finite";
-        error::check(self.simulation.alarms().iter().all(is_finite), "state", found, allowed)
-    }
-
         }
     }
 
@@ -90,6 +100,7 @@ impl Run {
         overwrite: bool,
     ) -> Result<()> {
         settings.validate("every")?;
+        self.check_finite("finite to be recorded")?;
         let mut now = self.scene.clone();
         now.set_settings(*self.simulation.settings());
         let recording =
@@ -100,7 +111,6 @@ impl Run {
         Ok(())
     }
 
-        self.check_finite("finite to be recorded")?;
     /// Ends its recording, if there is one.
     pub(crate) fn end_recording(&mut self) -> Result<()> {
         self.leave_recording_to_parent();
@@ -121,18 +131,22 @@ impl Run {
         }
     }
 
-    /// Takes steps for a while, at most so many. How many that were, and what ended them early.
-    pub(crate) fn take(&mut self, most: u64) -> (u64, Result<()>) {
+    /// Takes steps for a while, at most `most`, and none after a step at which `schedule` is due.
+    pub(crate) fn take(&mut self, most: u64, mut schedule: Option<&mut FrameSchedule>) -> Taken {
         let start = Instant::now();
-        for taken in 1..=most {
+        let mut taken = Taken { steps: 0, is_due: false, ended: Ok(()) };
+        while taken.steps < most && start.elapsed() < SLICE {
             let stepped = self.simulation.step().map(|_| ());
             let taken_down = self.take_down(stepped.is_ok());
-            let ended = stepped.and(taken_down);
-            if ended.is_err() || start.elapsed() >= SLICE {
-                return (taken, ended);
+            taken.steps += 1;
+            taken.ended = stepped.and(taken_down);
+            let due = |schedule: &mut &mut FrameSchedule| schedule.is_due(&self.simulation);
+            taken.is_due = schedule.as_mut().is_some_and(due);
+            if taken.ended.is_err() || taken.is_due {
+                break;
             }
         }
-        (most, Ok(()))
+        taken
     }
 
     /// Keeps what a step measured, and records its state unless it blew up; the row of one that did is one

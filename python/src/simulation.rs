@@ -7,7 +7,7 @@ use numpy::PyArray2;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::conversion::{exception, fields_of, parsed, refused, rows, vectors};
 use crate::run::Run;
@@ -112,7 +112,7 @@ impl Simulation {
         Run::start(scene).map(Self::of).map_err(exception)
     }
 
-    /// Takes steps. After each `every` of them `callback` is called with the simulation.
+    /// Takes `steps` steps. After each of them `callback` is called with the simulation.
     ///
     /// Other threads run meanwhile. Ctrl-C ends it after the step that it is in, as an exception of the
     /// callback does; all steps until then are taken, and the simulation can go on. What goes wrong without
@@ -122,26 +122,44 @@ impl Simulation {
     /// ------
     /// slump.NotFiniteError
     ///     Where a position or velocity is no longer a number.
-    #[pyo3(signature = (steps=1, callback=None, every=1))]
+    #[pyo3(signature = (steps=1, callback=None))]
     fn step(
         this: &Bound<'_, Self>,
         steps: i64,
         callback: Option<&Bound<'_, PyAny>>,
-        every: i64,
     ) -> PyResult<()> {
         let count = u64::try_from(steps);
         let count = count.map_err(|_| refused("steps", steps, "a whole number ≥ 0"))?;
-        stepping::take_steps(this, count, callback, every)
+        stepping::take_steps(this, count, callback, None)
     }
 
-    /// Takes the steps that are left until a simulated time (s), or until the scene's duration; else as `step`.
-    #[pyo3(name = "run", signature = (until=None, callback=None, every=1))]
+    /// Takes the steps that are left until a simulated time, `run(until=0.2)` (s), or without one until the scene's
+    /// `duration`. To run for 0.2 s, write `run(until=sim.time + 0.2)`.
+    ///
+    /// `callback` is called with the simulation each `every` seconds of simulated time, after the steps at which
+    /// `record` with the same `every` takes frames; without `every` it is called after each step. All else is as in
+    /// `step`.
+    #[pyo3(
+        name = "run",
+        signature = (*times, until=None, callback=None, every=None),
+        text_signature = "($self, *, until=None, callback=None, every=None)"
+    )]
     fn run_until(
         this: &Bound<'_, Self>,
+        times: &Bound<'_, PyTuple>,
         until: Option<f64>,
         callback: Option<&Bound<'_, PyAny>>,
-        every: i64,
+        every: Option<f64>,
     ) -> PyResult<()> {
+        // A bare number could be the time at which the run ends or the time that it takes.
+        if let Ok(time) = times.get_item(0) {
+            let sentence = format!(
+                "run is given {time}, but must be given until={time} to end at t = {time} s, or \
+                 until=sim.time + {time} to take {time} s"
+            );
+            return Err(PyTypeError::new_err(sentence));
+        }
+        let schedule = stepping::schedule_of(this, callback, every)?;
         let steps = {
             let run = this.get().run(this.py());
             let until = until.unwrap_or(run.scene.duration_secs);
@@ -152,7 +170,7 @@ impl Simulation {
             parameters.check_steps("until", until).map_err(exception)?;
             parameters.steps_in(until - run.simulation.time_secs())
         };
-        stepping::take_steps(this, steps, callback, every)
+        stepping::take_steps(this, steps, callback, schedule)
     }
 
     /// Changes settings from the next step on: all that are given, or none.

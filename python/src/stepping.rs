@@ -11,8 +11,10 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 use crate::conversion::{SlumpWarning, exception, refused};
+use crate::run::Taken;
 use crate::simulation::Simulation;
 use slump_core::sim::AlarmKind;
+use slump_data::data::{DataSettings, FrameSchedule, Times};
 
 /// The process that loaded this module.
 static LOADED_IN: OnceLock<u32> = OnceLock::new();
@@ -46,44 +48,60 @@ pub(crate) fn shared_out<T: Send>(
     Ok(pool.install(work))
 }
 
-/// Takes so many steps, and calls `callback` with the simulation after each `every` of them.
+/// The schedule of a callback: after the steps at which a recording with the same `every` (s) has frames, or, without
+/// it, after each step.
+pub(crate) fn schedule_of(
+    simulation: &Bound<'_, Simulation>,
+    callback: Option<&Bound<'_, PyAny>>,
+    every: Option<f64>,
+) -> PyResult<Option<FrameSchedule>> {
+    let Some(secs) = every else { return Ok(None) };
+    if callback.is_none() {
+        return Err(refused("every", secs, "left out where no callback is given"));
+    }
+    let settings = DataSettings { every_secs: every, ..DataSettings::default() };
+    settings.validate("every").map_err(exception)?;
+    let mut schedule = FrameSchedule::new(Times::of(&settings));
+    // A recording has a frame of the present state, but a callback is called after steps only.
+    schedule.is_due(&simulation.get().run(simulation.py()).simulation);
+    Ok(Some(schedule))
+}
+
+/// Takes `steps` steps, and calls `callback` with the simulation after those that `schedule` names, or after each.
 pub(crate) fn take_steps(
     simulation: &Bound<'_, Simulation>,
     steps: u64,
     callback: Option<&Bound<'_, PyAny>>,
-    every: i64,
+    mut schedule: Option<FrameSchedule>,
 ) -> PyResult<()> {
     let py = simulation.py();
-    let every = u64::try_from(every)
-        .ok()
-        .filter(|&every| every > 0)
-        .ok_or_else(|| refused("every", every, "a whole number of steps ≥ 1"))?;
+    let calls_each = callback.is_some() && schedule.is_none();
     let mut left = steps;
-    let mut until_call = every;
     while left > 0 {
-        let most = if callback.is_some() { left.min(until_call) } else { left };
-        let (taken, ended) = take(simulation, most)?;
-        left -= taken;
-        until_call -= taken.min(until_call);
+        let most = if calls_each { 1 } else { left };
+        let taken = take(simulation, most, schedule.as_mut())?;
+        left -= taken.steps;
         warn_of_alarms(simulation)?;
-        ended?;
+        taken.ended.map_err(exception)?;
         py.check_signals()?;
         if let Some(callback) = callback
-            && until_call == 0
+            && (calls_each || taken.is_due)
         {
             callback.call1((simulation,))?;
-            until_call = every;
         }
     }
     Ok(())
 }
 
-/// Takes steps for a while. How many that were, and what ended them early.
-fn take(simulation: &Bound<'_, Simulation>, most: u64) -> PyResult<(u64, PyResult<()>)> {
+/// Takes steps for a while.
+fn take(
+    simulation: &Bound<'_, Simulation>,
+    most: u64,
+    schedule: Option<&mut FrameSchedule>,
+) -> PyResult<Taken> {
     let this = simulation.get();
-    let done = simulation.py().detach(|| shared_out(|| this.locked().take(most)));
-    let (taken, ended) = done.map_err(|error| PyOSError::new_err(error.to_string()))?;
-    Ok((taken, ended.map_err(exception)))
+    let done = simulation.py().detach(|| shared_out(|| this.locked().take(most, schedule)));
+    done.map_err(|error| PyOSError::new_err(error.to_string()))
 }
 
 /// Warns of what went wrong since the last look. A state that is no longer finite is an exception of its own.

@@ -51,7 +51,7 @@ def test_rows_are_those_of_the_command_line(tmp_path: Path, run: dict[str, Any])
     options = {name: value for name, value in run.items() if name != "until"}
     expected = rows(tmp_path, options, run["until"])
     sim = slump.Simulation(**options)
-    sim.run(run["until"])
+    sim.run(until=run["until"])
     history = sim.history
     # Files of observables leave out the columns of bonds where there are none, and write units into names.
     names = {name.removesuffix("_secs"): name for name in expected}

@@ -17,7 +17,7 @@ def test_a_problem_is_that_of_the_command_line(tmp_path: Path) -> None:
     done = program("problem", "dump", "--bond=50", "--dt=5e-4", "--at=0.05", f"--out={file}")
     assert done.returncode == 0, done.stderr
     sim = slump.Simulation("pile", bond=50, dt=5e-4)
-    sim.run(0.05)
+    sim.run(until=0.05)
     problem, dumped = sim.next_problem(), json.loads(file.read_text())
     dumped.pop("comment")
     assert problem == dumped

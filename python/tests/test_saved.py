@@ -47,13 +47,13 @@ def test_a_saved_run_is_that_of_the_command_line_in_both_directions(tmp_path: Pa
     options = {"bond": 30, "dt": 1e-3}
     here, there, whole = (tmp_path / f"{name}.slump" for name in ("here", "there", "whole"))
     sim = slump.Simulation(**options)  # type: ignore[arg-type]
-    sim.run(0.03)
+    sim.run(until=0.03)
     sim.save(here)
     done = program("--headless", f"--restart={here}", f"--save={there}", "--duration=0.06", "--bond=5")
     assert done.returncode == 0, done.stderr
     of_program = slump.Simulation(restart=there)
     sim.bond = 5
-    sim.run(0.06)
+    sim.run(until=0.06)
     assert of_program.steps == 60 and told(of_program) == told(sim)
     done = program("--headless", f"--save={whole}", "--duration=0.03", *as_arguments(options))
     assert done.returncode == 0, done.stderr

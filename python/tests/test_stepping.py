@@ -10,6 +10,7 @@ import threading
 import time
 import warnings
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,8 @@ import pytest
 import slump
 
 
-def test_a_callback_is_called_each_so_many_steps_and_may_look_and_change() -> None:
-    sim = slump.Simulation("pile", bond=50)
+def test_a_callback_is_called_at_intervals_of_simulated_time_and_may_look_and_change() -> None:
+    sim = slump.Simulation("pile", bond=50, dt=1e-3)
     seen = []
 
     def look(now: slump.Simulation) -> None:
@@ -27,13 +28,46 @@ def test_a_callback_is_called_each_so_many_steps_and_may_look_and_change() -> No
         seen.append((now.steps, now.positions[0, 0], now.grains["x"][0]))
         now.bond = 10 * len(seen)
 
-    sim.step(25, callback=look, every=10)
+    sim.run(until=0.025, callback=look, every=0.01)
     assert [steps for steps, _, _ in seen] == [10, 20]
     assert all(of_array == of_table for _, of_array, of_table in seen)
     assert sim.bond == 20 and sim.steps == 25
     calls: list[int] = []
     sim.step(3, callback=lambda now: calls.append(now.steps))
     assert calls == [26, 27, 28]
+    sim.run(until=sim.time + 2e-3, callback=lambda now: calls.append(now.steps))
+    assert calls == [26, 27, 28, 29, 30]
+
+
+@pytest.mark.parametrize("every", [2.5e-3, 1e-2, 4e-4, 1e-300, 1e300])
+def test_callbacks_come_at_the_frames_of_a_recording(tmp_path: Path, every: float) -> None:
+    sim = slump.Simulation("cradle", dt=1e-3)
+    sim.step(3)
+    sim.record(tmp_path, every=every, formats=["csv"])
+    seen: list[int] = []
+    for until in (0.011, 0.02):
+        sim.run(until=until, callback=lambda now: seen.append(now.steps), every=every)
+    sim.end_recording()
+    lines = (tmp_path / "frames.csv").read_text().splitlines()
+    frames = [int(line.split(",")[0]) for line in lines if line[0].isdigit()]
+    assert seen == [step for step in frames if step > 3]
+
+
+def test_a_run_says_whether_a_time_is_its_end_or_its_length() -> None:
+    sim = slump.Simulation("cradle", dt=1e-3)
+    sim.run(until=0.02)
+    sim.run(until=0.02)
+    assert sim.steps == 20, "the end"
+    sim.run(until=sim.time + 0.02)
+    assert sim.steps == 40, "the length"
+    with pytest.raises(TypeError, match=r"run is given 0\.2, but must be given until=0\.2 to end at t = 0\.2 s, or until=sim\.time"):
+        sim.run(0.2)  # type: ignore[call-arg]
+    for every in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(slump.InputError, match="every is .*, but must be a finite number of seconds > 0"):
+            sim.run(until=0.1, callback=print, every=every)
+    with pytest.raises(slump.InputError, match="every is 0.1, but must be left out where no callback is given"):
+        sim.run(until=0.1, every=0.1)
+    assert sim.steps == 40
 
 
 def test_an_exception_of_a_callback_ends_the_stepping() -> None:
@@ -43,7 +77,7 @@ def test_an_exception_of_a_callback_ends_the_stepping() -> None:
         raise StopIteration("enough")
 
     with pytest.raises(StopIteration, match="enough"):
-        sim.step(100, callback=stop, every=7)
+        sim.run(until=100 * sim.dt, callback=stop, every=7 * sim.dt)
     assert sim.steps == 7
     sim.step(1)
     assert sim.steps == len(sim.history["step"]) == 8
@@ -162,5 +196,5 @@ def test_settings_are_attributes_and_count_from_the_next_step_on() -> None:
     assert list(sim.history["time_step"]) == [1e-3] * 10 + [5e-4] * 10
     # Rows of steps without bonds have their columns where others have some.
     assert np.isnan(sim.history["bond_energy"][:10]).all() and (sim.history["bond_energy"][10:] >= 0).all()
-    sim.run(0.02)
+    sim.run(until=0.02)
     assert sim.time == pytest.approx(0.02) and sim.steps == 30

@@ -24,7 +24,7 @@ pub use crate::scene::{DataSettings, FormatName};
 pub use columns::Observed;
 pub use format::{DEFAULT_FORMAT, Frame, RunFacts, check_format, formats_of};
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};
-pub use recording::{Recording, Times};
+pub use recording::{FrameSchedule, Recording, Times};
 pub(crate) use recording_folder::check_not_periodic;
 pub use recording_folder::{RecordingFolder, remove_recording};
 pub use step_columns::STEP_COLUMNS;

@@ -373,20 +373,21 @@ impl Times {
     }
 }
 
+/// The steps of a run at which frames are made.
 #[derive(Clone, Debug, PartialEq)]
-struct FrameSchedule {
+pub struct FrameSchedule {
     times: Times,
     next: usize,
 }
 
 impl FrameSchedule {
     /// Frames at the steps nearest to some times.
-    fn new(times: Times) -> Self {
+    pub fn new(times: Times) -> Self {
         Self { times, next: 0 }
     }
 
     /// True if a frame is to be made of the present state. Steps are to be asked for in turn.
-    fn is_due(&mut self, simulation: &Simulation) -> bool {
+    pub fn is_due(&mut self, simulation: &Simulation) -> bool {
         let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
         let step = simulation.observables().step;
         self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
