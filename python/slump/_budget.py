@@ -52,7 +52,7 @@ _OF_CAUSE = ("share", "cause", "changed", "starts", "unsolved", "cost", "failure
 
 
 def budget(
-    scene: str | None = None,
+    scene: str | os.PathLike[str] | None = None,
     quantity: str | Sequence[str] = "slump",
     *,
     begin: float | None = None,

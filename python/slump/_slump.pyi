@@ -64,30 +64,30 @@ class _Settings(TypedDict):
 
 class _Changes(TypedDict, total=False):
     stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"] | None
-    bond: float | None
-    dt: float | None
-    rho: float | None
-    mu: float | None
+    bond: _Float | None
+    dt: _Float | None
+    rho: _Float | None
+    mu: _Float | None
     cone: Literal["shifted", "compressive"] | None
-    restitution_threshold: float | None
-    debonding_distance: float | None
-    tilt: float | None
-    stiffness: float | None
-    damping_ratio: float | None
-    substeps: int | None
+    restitution_threshold: _Float | None
+    debonding_distance: _Float | None
+    tilt: _Float | None
+    stiffness: _Float | None
+    damping_ratio: _Float | None
+    substeps: _Int | None
     solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"] | None
     ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"] | None
     stop: Literal["relative-change", "impulse-per-mass", "residual", "velocity-error"] | None
-    tolerance: float | None
-    max_sweeps: int | None
-    warm_start: bool | None
+    tolerance: _Float | None
+    max_sweeps: _Int | None
+    warm_start: _Bool | None
     friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"] | None
-    model_solves: int | None
-    push_out: bool | None
-    max_travel: float | None
-    calm_unsolved: bool | None
-    sequential_impacts: bool | None
-    speculative: bool | None
+    model_solves: _Int | None
+    push_out: _Bool | None
+    max_travel: _Float | None
+    calm_unsolved: _Bool | None
+    sequential_impacts: _Bool | None
+    speculative: _Bool | None
 
 class _Attributes:
     stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"]
@@ -118,15 +118,15 @@ class _Attributes:
 # Settings end.
 
 class _Options(_Changes, total=False):
-    initial_step: int | None
-    grains: int | None
-    box_width: float | None
-    base_width: float | None
-    seed: int | None
+    initial_step: _Int | None
+    grains: _Int | None
+    box_width: _Float | None
+    base_width: _Float | None
+    seed: _Int | None
     deposition: Literal["rain", "drop-and-roll"] | None
-    start: float | None
-    preset: Literal["robust"] | None
-    duration: float | None
+    start: _Float | None
+    preset: Literal["paper", "robust"] | None
+    duration: _Float | None
 
 @disjoint_base
 class Simulation(_Attributes):
@@ -154,15 +154,15 @@ class Simulation(_Attributes):
     def __reduce__(self) -> tuple[Callable[[bytes], Simulation], tuple[bytes]]: ...
     def set_positions(self, positions: Any) -> None: ...
     def set_velocities(self, velocities: Any) -> None: ...
-    def add_grain(self, x: float, y: float, radius: float, vx: float = 0.0, vy: float = 0.0) -> None: ...
-    def remove_grain(self, i: int) -> None: ...
+    def add_grain(self, x: _Float, y: _Float, radius: _Float, vx: _Float = 0.0, vy: _Float = 0.0) -> None: ...
+    def remove_grain(self, i: _Int) -> None: ...
     def begin_pairs(self) -> None: ...
-    def fields(self, width: float | None = None) -> dict[str, Any]: ...
+    def fields(self, width: _Float | None = None) -> dict[str, Any]: ...
     def _repr_html_(self) -> str: ...
     def record(
         self,
         folder: _Path,
-        every: float = 0.04,
+        every: _Float = 0.04,
         formats: Sequence[Literal["parquet", "csv", "vtk", "ovito", "fields"]] | None = None,
         overwrite: _Bool = False,
     ) -> None: ...
