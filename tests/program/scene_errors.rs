@@ -267,3 +267,116 @@ fn written_discs_read_back_bit_for_bit() {
         assert_eq!(bits(&read), bits(&grains));
     }
 }
+
+/// All that a scene file must say.
+const LEAST: &str = "name = \"least\"
+mean_diameter = 0.2
+duration_secs = 1.0
+[physics]
+axes = 2
+friction = true
+rotation = true
+cohesion = true
+[gravity]
+kind = \"uniform\"
+acceleration = [0.0, -9.8]
+[parameters]
+bond = 0.0
+time_step_secs = 1e-3
+restitution = 0.1
+friction = 0.5
+[[grains]]
+position = [0.0, 1.0]
+radius = 0.1
+";
+
+#[test]
+fn a_scene_file_that_says_the_least_has_all_defaults() {
+    let grains = vec![Grain::at_rest(DVec2::Y, 0.1)];
+    let expected = Scene {
+        name: "least".into(),
+        mean_diameter: 0.2,
+        duration_secs: 1.0,
+        stepper: Stepper::default(),
+        solver: SolverSettings::default(),
+        ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), grains)
+    };
+    assert_eq!(read_text(LEAST).expect("a scene"), expected);
+    for left_out in LEAST.lines().filter(|line| line.contains(" = ")) {
+        let lines = LEAST.lines().filter(|line| line != &left_out);
+        let message = read_text(&lines.collect::<Vec<_>>().join("\n")).expect_err(left_out);
+        let field = left_out.split(' ').next().expect("a name");
+        assert!(message.contains(&format!("missing field `{field}`")), "{left_out}: {message}");
+    }
+}
+
+#[test]
+fn what_a_table_of_a_scene_file_leaves_out_has_its_default() {
+    let table = |group: &dyn Fn() -> Result<toml::Table, toml::ser::Error>| group().expect("TOML");
+    let solver = SolverSettings {
+        method: Method::Nsgs,
+        ordering: Ordering::Symmetric,
+        stop: StopTest::Residual,
+        tolerance: 1e-3,
+        max_sweeps: 7,
+        warm_start: false,
+        friction_model: FrictionModel::Coulomb,
+        model_solves: 2,
+    };
+    let remedies = Remedies {
+        push_out: true,
+        max_travel: 0.25,
+        calm_unsolved: true,
+        sequential_impacts: true,
+        speculative: true,
+    };
+    let parameters = Parameters {
+        cone: FrictionCone::Compressive,
+        restitution_threshold: 2.0,
+        debonding_distance: 0.02,
+        tilt: 10.0,
+        stiffness: 100.0,
+        damping_ratio: 0.5,
+        substeps: 3,
+        ..parameters(0.0, 1e-3, 0.1, 0.5)
+    };
+    let data = slump::data::DataSettings {
+        folder: None,
+        every_secs: Some(0.5),
+        formats: vec![slump::data::FormatName::Csv],
+    };
+    let needed = &["bond", "time_step_secs", "restitution", "friction"];
+    let groups: [(&str, toml::Table, &[&str]); 4] = [
+        ("solver", table(&|| toml::Table::try_from(solver)), &[]),
+        ("remedies", table(&|| toml::Table::try_from(remedies)), &[]),
+        ("parameters", table(&|| toml::Table::try_from(parameters)), needed),
+        ("data", table(&|| toml::Table::try_from(&data)), &[]),
+    ];
+    let least: toml::Table = toml::from_str(LEAST).expect("TOML");
+    let read = |name: &str, table: toml::Table| {
+        let whole = toml::Table::from_iter([(name.to_owned(), table.into())]);
+        let others = least.clone().into_iter().filter(|(other, _)| other != name);
+        let text = toml::to_string(&others.chain(whole).collect::<toml::Table>()).expect("TOML");
+        read_text(&text).unwrap_or_else(|message| panic!("{message} in\n{text}"))
+    };
+    for (name, all, needed) in groups {
+        assert!(all.len() >= 2, "{name}");
+        let of_least = match least.get(name) {
+            Some(toml::Value::Table(table)) => table.clone(),
+            _ => toml::Table::new(),
+        };
+        let before = toml::Table::try_from(read(name, of_least.clone())).expect("TOML");
+        for (field, value) in all.iter().filter(|(field, _)| !needed.contains(&field.as_str())) {
+            let mut given = of_least.clone();
+            given.insert(field.clone(), value.clone());
+            let found = toml::Table::try_from(read(name, given)).expect("TOML");
+            let mut expected = before.clone();
+            let of_group = expected.entry(name).or_insert(toml::Table::new().into());
+            let of_group = of_group.as_table_mut().expect("a table");
+            of_group.insert(field.clone(), value.clone());
+            for (other, expected) in of_group.iter() {
+                assert_eq!(&found[name][other], expected, "{name}.{other} where {field} is given");
+            }
+        }
+    }
+}

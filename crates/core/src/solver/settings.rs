@@ -65,16 +65,16 @@ settings! {
     ///
     /// By default each step is solved with a certificate: within bounds of friction, to velocities that differ from
     /// those of the solution by no more than a share of √(g d) that no slump of a pile feels.
+    #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Method that solves each step", {
             control: shown("Method", "How the impulses of a step are found."),
         }
-        #[serde(default, skip_serializing_if = "is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         ordering: Ordering = Ordering::Interleaved, "ordering" ("ORDER"),
             "In which order a sweep visits the contacts", {
             control: shown("Order", "In which order a sweep visits contacts."),
         }
-        #[serde(default = "relative_change")]
         stop: StopTest = StopTest::VelocityError, "stop" ("TEST"), "What the tolerance refers to", {
             control: shown("Stops on", "What the tolerance refers to."),
         }
@@ -106,7 +106,6 @@ settings! {
         warm_start: bool = true, "warm-start", "Whether each step starts from the impulses of the one before", {
             control: shown("Warm start", "Each step starts from the impulses of the one before."),
         }
-        #[serde(default = "coulomb")]
         friction_model: FrictionModel = FrictionModel::OfMethod, "friction-model" ("MODEL"),
             "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
              `slump list` says what each gets wrong", {
@@ -116,7 +115,6 @@ settings! {
                 "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
             ),
         }
-        #[serde(default = "one")]
         model_solves: u32 = 1, "model-solves",
             "How often each step is solved under tresca or desaxce, what they hold taken anew each \
              time: 1 is the cheapest, more come nearer to Coulomb's law", {
@@ -137,21 +135,6 @@ settings! {
 /// What came after the first scene files is written where it is not left at its default.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
-}
-
-/// What the first scene files meant that say nothing of the stopping test.
-fn relative_change() -> StopTest {
-    StopTest::RelativeChange
-}
-
-/// The same of models of friction.
-fn coulomb() -> FrictionModel {
-    FrictionModel::Coulomb
-}
-
-/// The same of solves.
-fn one() -> u32 {
-    1
 }
 
 impl SolverSettings {
