@@ -189,7 +189,7 @@ def blown_up(way: str) -> slump.Simulation:
         scene["gravity"]["acceleration"] = [0.0, -1e150]
         sim = slump.Simulation(scene)
     else:
-        sim = slump.Simulation("pile", bond=20)
+        sim = slump.Simulation("pile", bond=20, grains=12, box_width=4.0)
         sim.step(3)
         sim.set_velocities(sim.velocities + 1e300)
     with warnings.catch_warnings():
