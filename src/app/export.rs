@@ -198,7 +198,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         let mut lines = text.lines();
         let header = lines.next().unwrap();
-        assert!(header.starts_with("world,step,time_secs"), "{header}");
+        assert!(header.starts_with("world,step,time,time_step,"), "{header}");
         assert!(
             lines.next().unwrap().starts_with("1,0,") && lines.next().unwrap().starts_with("2,0,")
         );

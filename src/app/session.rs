@@ -22,7 +22,7 @@ use crate::output::{Seal, write_file};
 /// What files begin with.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
-    format: 4,
+    format: 5,
     what: "session",
     of: "",
     form: "a session that the window saved",

@@ -112,7 +112,7 @@ fn a_table_stays_plain_and_a_text_beside_it_says_what_it_is_of() {
     robot.key(egui::Key::ArrowRight);
     let table = written(&mut robot, |robot| robot.clicks(&["Compare", "Curves as CSV"]), "csv");
     let text = read(&table);
-    assert!(text.starts_with("world,step,time_secs,"), "{text}");
+    assert!(text.starts_with("world,step,time,time_step,"), "{text}");
     let beside = read(table.with_extension("csv.txt"));
     assert!(beside.starts_with("Software: slump "), "{beside}");
     assert!(beside.contains("\nCommand line: slump --headless --scene pile"), "{beside}");

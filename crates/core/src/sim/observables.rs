@@ -10,14 +10,16 @@ use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Measures, Model, SolveReport};
 use crate::world::{Drive, Periodic};
 
-/// Measured after each step. One row of the observables' CSV.
+/// Measured after each step. One row of the observables' CSV, which has the names of columns in recordings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observables {
     /// Steps taken so far.
     pub step: u64,
     /// Simulated time, s.
+    #[serde(rename = "time")]
     pub time_secs: f64,
     /// Δt of this step, s.
+    #[serde(rename = "time_step")]
     pub time_step_secs: f64,
     /// Sweeps of the solver; of a scheme, its passes over all contacts.
     pub sweeps: u32,
@@ -327,7 +329,7 @@ mod tests {
     use super::*;
 
     /// Columns that the window does not plot.
-    const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled residual \
+    const NOT_PLOTTED: &str = "step time time_step sweeps factorisations converged stalled residual \
         model_residual contacts compressive_contacts tensile_contacts potential_energy normal_work \
         tangential_work wall_work drive_work border_work gravity_work bond_work drive_energy lost_grains";
 

@@ -23,7 +23,7 @@ const BEGINNINGS: [(&[u8], &[u8]); 13] = [
     (b"{\n  \"study\": ", b"\n  \"fingerprint\": "),
     (OF_JOURNAL, b""),
     (b"run,key,", b""),
-    (b"step,time_secs,", b""),
+    (b"step,time,time_step,", b""),
     (b"# ", b"# column step: "),
     (b"ITEM: UNITS\nsi\nITEM: PARAMETERS\n", b""),
     (b"ITEM: TIMESTEP\n", b" x_unwrapped y_unwrapped "),

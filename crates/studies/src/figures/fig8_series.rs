@@ -104,8 +104,12 @@ fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
     let refuse = |error: csv::Error| Error::file("series", error);
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let headers = reader.headers().map_err(refuse)?.clone();
-    let column = |name: &str| headers.iter().position(|header| header == name).unwrap_or(0);
-    let columns = ["time_secs", "x0", "x1", "x2"].map(column);
+    let column = |name: &str| {
+        let missing = || format!("has no column {name}, but must be as this version writes series");
+        let found = headers.iter().position(|header| header == name);
+        found.ok_or_else(|| Error::file("series", missing()))
+    };
+    let columns = [column("time")?, column("x0")?, column("x1")?, column("x2")?];
     let mut rows: Vec<SeriesRow> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(refuse)?;
@@ -199,4 +203,22 @@ fn one_velocity(runs: &[DiscSeries]) -> Claim {
         (least > 0.0 && most <= ONE_VELOCITY * least).into(),
     )
     .by_chance("nothing is drawn at random: one start, six time steps")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_series_without_a_column_is_refused() {
+        let rows = "0,0.5,3,0,2,0,1,0\n";
+        let of = |names: &str| read(&format!("{names}\n{rows}"), 1.0);
+        let read = of("step,time,x0,y0,x1,y1,x2,y2").expect("a series");
+        assert_eq!(read, [(0.5, [3.0, 2.0, 1.0])]);
+        let refused = of("step,time_secs,x0,y0,x1,y1,x2,y2").expect_err("no time").to_string();
+        assert_eq!(
+            refused,
+            "series: has no column time, but must be as this version writes series"
+        );
+    }
 }

@@ -113,7 +113,7 @@ pub(super) fn words(plan: &SimulationPlan, references: &References) -> String {
 }
 
 pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> ReportTable {
-    let columns = "method time_step_secs effort failed simulated_secs_per_sec error_same_step error_finest_step \
+    let columns = "method time_step effort failed simulated_secs_per_sec error_same_step error_finest_step \
                    verdicts_agreed mean_overlap unconverged_steps steps";
     let row = |point: &SimulatedPoint| {
         let runs = &point.runs;
