@@ -38,6 +38,7 @@ _Bool = bool | np.bool_
 class _Settings(TypedDict):
     stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"]
     bond: float
+    bond_acceleration: float
     dt: float
     rho: float
     mu: float
@@ -65,6 +66,7 @@ class _Settings(TypedDict):
 class _Changes(TypedDict, total=False):
     stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"] | None
     bond: _Float | None
+    bond_acceleration: _Float | None
     dt: _Float | None
     rho: _Float | None
     mu: _Float | None
@@ -92,6 +94,7 @@ class _Changes(TypedDict, total=False):
 class _Attributes:
     stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"]
     bond: float
+    bond_acceleration: float
     dt: float
     rho: float
     mu: float

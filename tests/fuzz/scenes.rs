@@ -67,6 +67,7 @@ fn parameters(u: &mut Unstructured<'_>) -> Result<Parameters> {
         damping_ratio: *u.choose(&[0.0, 0.0, 0.05, 3.0])?,
         substeps: *u.choose(&[0, 0, 1, 7])?,
         tilt: 0.0,
+        bond_acceleration: *u.choose(&[0.0, 0.0, 5.0])?,
     })
 }
 

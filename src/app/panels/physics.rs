@@ -103,7 +103,10 @@ fn derived(ui: &mut Ui, state: &AppState, settings: &Settings) {
             row(
                 "escape speed √(2C₀δc/m_ij)",
                 "A pair that is thrown apart faster parts, at every time step.",
-                si(escape_speed(parameters.bond, g, distance), "m/s"),
+                si(
+                    escape_speed(parameters.bond, parameters.cohesion_acceleration(g), distance),
+                    "m/s",
+                ),
             );
         }
         if let Some(secs) = world.contact_time_secs {

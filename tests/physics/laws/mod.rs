@@ -1,5 +1,6 @@
 //! The laws of contact on few bodies and small piles, held against exact motion.
 
+mod cohesion;
 mod conservation;
 mod cradle;
 mod impacts;

@@ -7,8 +7,8 @@
 //!
 //! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
 //!
-//! C₀Δt/m_ij = Bond·g·Δt is the capture speed, the same for every contact of a scene: in σ, cohesion
-//! is nothing but a constant pull that the contact pushes against, and the law without cohesion is
+//! C₀Δt/m_ij = Bond·a·Δt is the capture speed, with a = g unless another acceleration is given. It is
+//! the same for every contact of a scene: in σ, cohesion is nothing but a constant pull that the contact pushes against, and the law without cohesion is
 //! that with a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the compressive
 //! part alone it is |λ_t| ≤ μ max(σ − capture speed, 0). Both are |λ_t| ≤ μ max(σ − c, 0) with the tip of the
 //! cone at c: the shifted one's is at 0, and a σ that the law allows is at least that.
@@ -44,7 +44,7 @@ impl ContactLaw {
         Self::new(self.friction, capture_speed, self.cone)
     }
 
-    /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.
+    /// C₀Δt/m_ij = Bond·a·Δt, m/s; 0 in a scene without cohesion.
     #[inline(always)]
     pub fn capture_speed(&self) -> f64 {
         self.capture_speed
@@ -74,9 +74,9 @@ impl ContactLaw {
     }
 }
 
-/// C₀ = Bond · m_ij · g, newton (paper eq. 10).
-pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) -> f64 {
-    bond * effective_mass * gravity_magnitude
+/// C₀ = Bond · m_ij · a, newton (paper eq. 10, where a is g).
+pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) -> f64 {
+    bond * effective_mass * acceleration
 }
 
 /// Projects σ (m/s) on σ ≥ 0.

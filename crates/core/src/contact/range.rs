@@ -86,15 +86,15 @@ impl OpeningMotion {
     }
 }
 
-/// √(2C₀δ_c/m_ij), m/s: a pair that is thrown apart faster parts.
-pub fn escape_speed(bond: f64, gravity_magnitude: f64, debonding_distance: f64) -> f64 {
-    (2.0 * law::cohesion_force(bond, 1.0, gravity_magnitude) * debonding_distance).sqrt()
+/// √(2C₀δ_c/m_ij), m/s, where C₀/m_ij is Bond times that acceleration (m/s²): a pair that is thrown apart faster parts.
+pub fn escape_speed(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
+    (2.0 * law::cohesion_force(bond, 1.0, acceleration) * debonding_distance).sqrt()
 }
 
 /// √(2δ_c m_ij/C₀), s: the time in which the pull of a bond alone would open it, or close it, by δ_c.
 /// Infinite without cohesion.
-pub(crate) fn bond_time_secs(bond: f64, gravity_magnitude: f64, debonding_distance: f64) -> f64 {
-    (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, gravity_magnitude)).sqrt()
+pub(crate) fn bond_time_secs(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
+    (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, acceleration)).sqrt()
 }
 
 #[cfg(test)]

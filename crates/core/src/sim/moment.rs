@@ -257,6 +257,8 @@ impl<'a> Laws<'a> {
         let masses = &self.world.grains.masses;
         let mass = masses[contact.grain as usize];
         let per_mass = 1.0 / mass + other.grain().map_or(0.0, |index| 1.0 / masses[index]);
-        cohesion_force(self.parameters.bond, 1.0 / per_mass, self.world.gravity.magnitude())
+        let g = self.world.gravity.magnitude();
+        let acceleration = self.parameters.cohesion_acceleration(g);
+        cohesion_force(self.parameters.bond, 1.0 / per_mass, acceleration)
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::solver::Model;
-use crate::world::World;
+use crate::world::{Parameters, World};
 
 /// Stiffness per mass of the grain, in units of g/d: one diameter of stretch pulls with this many
 /// times the grain's weight.
@@ -12,11 +12,21 @@ const STIFFNESS: f64 = 40.0;
 /// g that numbers refer to on a scene without gravity, m/s².
 const GRAVITY_IF_NONE: f64 = 9.8;
 
-/// The g that stiffnesses and speeds are measured in, m/s²: a scene's own, if it has any.
+/// Acceleration that a hand's stiffness and speed are measured in, m/s²: the scene's gravity, if it has any.
 pub(super) fn gravity_that_scales(world: &World) -> f64 {
-    match world.gravity.magnitude() {
+    or_if_none(world.gravity.magnitude())
+}
+
+/// Acceleration that the springs of contacts are measured in, m/s²: the scene's gravity, or that of the cohesion force
+/// in a scene without gravity. Springs that are softer give way to a bond by more than a diameter.
+pub(super) fn acceleration_of_springs(world: &World, parameters: &Parameters) -> f64 {
+    or_if_none(parameters.accelerating(world.gravity.magnitude()))
+}
+
+fn or_if_none(acceleration: f64) -> f64 {
+    match acceleration {
         0.0 => GRAVITY_IF_NONE,
-        magnitude => magnitude,
+        given => given,
     }
 }
 

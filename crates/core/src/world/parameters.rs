@@ -30,7 +30,7 @@ settings! {
     ///
     /// The default is the paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
-        /// Bond number: C₀ = Bond · m_ij · g (paper eq. 10).
+        /// Bond number: C₀ = Bond · m_ij · a (paper eq. 10), where a is [`Parameters::cohesion_acceleration`].
         bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force over effective weight, at least 0", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
@@ -43,6 +43,13 @@ settings! {
                 most: 1e6,
                 ..Control::PLAIN
             }),
+        }
+        #[serde(default, skip_serializing_if = "is_zero")]
+        bond_acceleration: f64 = 0.0, "bond-acceleration" ("A"),
+            "Acceleration a of the cohesion force Bond·m·a, m/s²; 0 takes the scene's gravity", {
+            allowed: "a finite number of m/s² ≥ 0; 0 takes the scene's gravity",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            needs: Needs::Cohesion,
         }
         /// Δt, s.
         time_step_secs: f64 = 1e-3, "dt" ("SECONDS"), "Time step, seconds", {
@@ -223,13 +230,34 @@ impl Parameters {
         if normal_velocity.abs() < least { 0.0 } else { self.restitution * normal_velocity }
     }
 
-    /// Bond·Δt/√(d/g), dimensionless (paper §3.3).
-    pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
-        self.bond * self.time_step_secs / (mean_diameter / gravity_magnitude).sqrt()
+    /// a in C₀ = Bond · m_ij · a, m/s²: the parameter where it is given, else the scene's gravity.
+    pub fn cohesion_acceleration(&self, gravity_magnitude: f64) -> f64 {
+        match self.bond_acceleration {
+            0.0 => gravity_magnitude,
+            given => given,
+        }
     }
 
-    /// Bond·g·Δt, m/s: the opening speed that one step of cohesion cancels (paper eq. 9).
+    /// Acceleration that turns lengths into speeds, m/s²: the scene's gravity, or a without gravity.
+    pub fn accelerating(&self, gravity_magnitude: f64) -> f64 {
+        match gravity_magnitude {
+            0.0 => self.bond_acceleration,
+            gravity => gravity,
+        }
+    }
+
+    /// Bond·a·Δt/√(g·d), dimensionless: Bond·Δt/√(d/g) if a is g (paper §3.3). Without gravity, a replaces g.
+    pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
+        let g = self.accelerating(gravity_magnitude);
+        let ratio = match self.bond_acceleration {
+            0.0 => 1.0,
+            given => given / g,
+        };
+        ratio * self.bond * self.time_step_secs / (mean_diameter / g).sqrt()
+    }
+
+    /// Bond·a·Δt, m/s: the opening speed that one step of cohesion cancels (paper eq. 9).
     pub fn capture_speed(&self, gravity_magnitude: f64) -> f64 {
-        self.bond * gravity_magnitude * self.time_step_secs
+        self.bond * self.cohesion_acceleration(gravity_magnitude) * self.time_step_secs
     }
 }

@@ -6,7 +6,7 @@
 //! c = v − w + b, the relative velocity less that of the wall, where b = gap/h keeps a gap from closing by more than
 //! it is, a contact pushes with the reduced impulse
 //!
-//! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·g·h),  |λ_t| ≤ μσ likewise around λ_t⁰ − κ_t c_t,  κ = k h²/m_ij.
+//! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  |λ_t| ≤ μσ likewise around λ_t⁰ − κ_t c_t,  κ = k h²/m_ij.
 //!
 //! One iteration is, **for each body** in turn, a step of Newton's method on its own energy with all others held,
 //!
@@ -25,7 +25,7 @@ use glam::{DMat3, DVec3};
 
 use crate::contact::{ContactLaw, law};
 use crate::number::Parts;
-use crate::sim::pull::gravity_that_scales;
+use crate::sim::pull::acceleration_of_springs;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::StepperInfo;
 use crate::sim::steppers::substeps::{self, Substepping, Touching};
@@ -36,7 +36,7 @@ use crate::world::Parameters;
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "the step's problem by penalties and multipliers, as far as its iterations get",
     source: "C. Giles, E. Diaz and C. Yuksel (2025)",
-    settings: "bond dt tilt mu cone warm-start substeps",
+    settings: "bond bond-acceleration dt tilt mu cone warm-start substeps",
     substeps: |_, _, parameters| substeps(parameters),
     ..StepperInfo::WHOLE
 };
@@ -56,7 +56,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let capture_speed = stage.problem.law.capture_speed() / f64::from(substeps);
     let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
     let mut contacts = substeps::touching(stage, warm_secs);
-    let mut descent = BlockDescent::new(stage, substep_secs);
+    let mut descent = BlockDescent::new(stage, substep_secs, &settings.parameters);
     if settings.solver.warm_start {
         descent.stiffen(stage);
     }
@@ -136,7 +136,7 @@ struct BlockDescent {
 }
 
 impl BlockDescent {
-    fn new<M: Model>(stage: &Stage<'_, M>, substep_secs: f64) -> Self {
+    fn new<M: Model>(stage: &Stage<'_, M>, substep_secs: f64, parameters: &Parameters) -> Self {
         let (world, problem) = (stage.world(), stage.problem());
         let fixed = problem.rows.fixed.len();
         let mut of_bodies: Vec<(u32, Side)> = Vec::new();
@@ -150,7 +150,7 @@ impl BlockDescent {
         of_bodies.sort_by_key(|&(body, _)| body);
         let ends = 0..problem.bodies.now.len() as u32;
         let side_ends = ends.map(|body| of_bodies.partition_point(|side| side.0 <= body)).collect();
-        let g = gravity_that_scales(world);
+        let g = acceleration_of_springs(world, parameters);
         Self {
             substep_secs,
             law: problem.law,

@@ -24,7 +24,7 @@ use crate::solver::{DrivenWall, Model, cone_of};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
-    settings: "bond dt tilt rho mu cone stiffness damping-ratio substeps",
+    settings: "bond bond-acceleration dt tilt rho mu cone stiffness damping-ratio substeps",
     takes_drives: true,
     substeps,
     critical_time_step_secs: |world, physics, parameters| {
@@ -49,7 +49,8 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let cohesion = if physics.cohesion { parameters.bond } else { 0.0 };
     let elements = Elements {
         springs: SpringDashpot::of(world, physics.axes, parameters),
-        cohesive_acceleration: cohesion * world.gravity.magnitude(),
+        cohesive_acceleration: cohesion
+            * parameters.cohesion_acceleration(world.gravity.magnitude()),
         law: ContactLaw::new(parameters.friction, 0.0, cone_of(physics, parameters)),
         substep_secs: parameters.time_step_secs / f64::from(substeps),
     };
@@ -101,7 +102,7 @@ fn velocity<M: Model>(
 /// The law of the contacts.
 struct Elements {
     springs: SpringDashpot,
-    /// C₀/m_ij = Bond·g, m/s².
+    /// C₀/m_ij = Bond·a, m/s².
     cohesive_acceleration: f64,
     law: ContactLaw,
     substep_secs: f64,

@@ -155,7 +155,8 @@ impl StepperMemory {
 pub struct FractureWork {
     /// J.
     pub joules: f64,
-    /// In m·g·d, which lifts one of the grains by a diameter; 0 without gravity, where no bond pulls.
+    /// In m·g·d, which lifts one of the grains by a diameter. Without gravity the acceleration of the cohesion force takes
+    /// the place of g; 0 where there is neither.
     pub over_mgd: f64,
 }
 
@@ -176,8 +177,9 @@ pub(super) fn fracture_work_of(
         return None;
     }
     let (effective_mass, g) = (effective_mass_of_mean(world), world.gravity.magnitude());
-    let joules = work(cohesion_force(parameters.bond, effective_mass, g));
-    let lift = 2.0 * effective_mass * g * world.mean_diameter;
+    let acceleration = parameters.cohesion_acceleration(g);
+    let joules = work(cohesion_force(parameters.bond, effective_mass, acceleration));
+    let lift = 2.0 * effective_mass * parameters.accelerating(g) * world.mean_diameter;
     Some(FractureWork { joules, over_mgd: if lift > 0.0 { joules / lift } else { 0.0 } })
 }
 

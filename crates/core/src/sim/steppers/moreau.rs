@@ -11,7 +11,7 @@ use crate::solver::{Approach, Model};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with cohesion and Coulomb's law",
     source: "A. Abramian, L. Staron, Time Steps v.s. Cohesion (2020); J. J. Moreau (1988)",
-    settings: "bond dt tilt rho mu cone restitution-threshold solver ordering stop tolerance \
+    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold solver ordering stop tolerance \
         max-sweeps warm-start friction-model model-solves",
     takes_drives: true,
     ..StepperInfo::WHOLE

@@ -34,7 +34,7 @@
 //! mode of the whole is faster than the fastest one of a contact by itself, ω² = z k/m_ij, ζ√z.
 //! With k_t = k m_t/m_n and γ_t = γ m_t/m_n the tangential mode is as fast as the normal one.
 
-use crate::sim::pull::gravity_that_scales;
+use crate::sim::pull::acceleration_of_springs;
 use crate::sim::steppers::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
@@ -66,7 +66,7 @@ impl SpringDashpot {
     pub fn of(world: &World, axes: u8, parameters: &Parameters) -> Self {
         Self {
             stiffness: match parameters.stiffness {
-                0.0 => stiffness_for_weight(world, axes),
+                0.0 => stiffness_for_weight(world, axes, parameters),
                 given => given,
             },
             damping_ratio: match parameters.damping_ratio {
@@ -106,11 +106,11 @@ impl SpringDashpot {
 
 /// The stiffness, N/m, at which the weight of a column as high as the grains are many along an axis, √n in the
 /// plane, makes the static overlap.
-fn stiffness_for_weight(world: &World, axes: u8) -> f64 {
+fn stiffness_for_weight(world: &World, axes: u8, parameters: &Parameters) -> f64 {
     let masses = &world.grains.masses;
     let count = masses.len() as f64;
     let column = if axes == 1 { count } else { count.sqrt() };
-    let g = gravity_that_scales(world);
+    let g = acceleration_of_springs(world, parameters);
     let load = column * g * masses.iter().sum::<f64>() / count;
     load / (STATIC_OVERLAP * world.mean_diameter)
 }

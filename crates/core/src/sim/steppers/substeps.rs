@@ -134,7 +134,7 @@ pub(super) struct Touching {
     pub answers: [f64; 2],
     /// What the law asks it to part with, relative to its wall, m/s; below 0 where it closed.
     pub rebound: f64,
-    /// Bond·g·h where it is cohesive in this substep, else 0, m/s.
+    /// Bond·a·h where it is cohesive in this substep, else 0, m/s.
     pub capture_speed: f64,
     /// (λ_n, λ_t) of this substep, m/s.
     pub impulse: [f64; 2],

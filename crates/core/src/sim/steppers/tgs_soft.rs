@@ -2,7 +2,7 @@
 //! Constraints*, 2011, and *Solver2D*, 2024).
 //!
 //! Contacts are those of the beginning of the step; there are no speculative ones. In each substep
-//! h, with σ = λ_n + Bond·g·h the shifted reduced impulse of the contact laws:
+//! h, with σ = λ_n + Bond·a·h the shifted reduced impulse of the contact laws:
 //!
 //! 1. gravity accelerates the bodies;
 //! 2. the impulses of the substep before are applied (warm start);
@@ -15,13 +15,13 @@
 //! threshold is that of the step's problem: contacts that met at less than `restitution_threshold`
 //! g·Δt do not bounce, nor do those that were opening.
 //!
-//! **Cohesion** is the bound λ_n ≥ −Bond·g·h of a contact whose gap is negative when the substep
+//! **Cohesion** is the bound λ_n ≥ −Bond·a·h of a contact whose gap is negative when the substep
 //! begins, and so a force that depends on neither Δt nor h; with a gap the bound is 0, and the
 //! contact only keeps the grains from closing the gap by more than it is.
 
 use crate::contact::{ContactLaw, law};
 use crate::number::Parts;
-use crate::sim::pull::gravity_that_scales;
+use crate::sim::pull::acceleration_of_springs;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::StepperInfo;
@@ -33,7 +33,7 @@ use crate::world::{Parameters, World};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "E. Catto, Solver2D (2024)",
-    settings: "bond dt tilt rho mu cone restitution-threshold warm-start substeps",
+    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold warm-start substeps",
     takes_drives: true,
     substeps: |_, _, parameters| substeps(parameters),
     ..StepperInfo::WHOLE
@@ -49,7 +49,8 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let substeps = substeps(&settings.parameters);
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
     let substep_secs = substepping.substep_secs;
-    let softness = Softness::new(&stage.state.world, stage.problem.law, substep_secs);
+    let (world, law) = (&stage.state.world, stage.problem.law);
+    let softness = Softness::new(world, law, substep_secs, &settings.parameters);
     let gap_tolerance = stage.state.candidates.gap_tolerance();
     let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
     let mut contacts = substeps::touching(stage, warm_secs);
@@ -180,9 +181,9 @@ struct Softness {
 }
 
 impl Softness {
-    fn new(world: &World, law: ContactLaw, substep_secs: f64) -> Self {
+    fn new(world: &World, law: ContactLaw, substep_secs: f64, parameters: &Parameters) -> Self {
         let diameter = world.mean_diameter;
-        let g = gravity_that_scales(world);
+        let g = acceleration_of_springs(world, parameters);
         let highest = FREQUENCY_PER_SUBSTEP / substep_secs;
         let frequency = std::f64::consts::TAU * highest.min(FREQUENCY * (g / diameter).sqrt());
         let damping = 2.0 * DAMPING_RATIO + substep_secs * frequency;

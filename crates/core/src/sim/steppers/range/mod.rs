@@ -35,7 +35,7 @@ use crate::world::{FrictionCone, Parameters, World};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
     source: "bonds that cost the work C₀δc; shocks apart from loads",
-    settings: "bond dt tilt rho mu cone restitution-threshold debonding-distance solver \
+    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold debonding-distance solver \
         ordering stop tolerance max-sweeps warm-start friction-model model-solves",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
@@ -101,9 +101,10 @@ impl StepCut {
         let distance = parameters.debonding_distance * world.mean_diameter;
         let travel = travel(state, whole);
         let of_travel = (travel / (MOST_TRAVEL * world.mean_diameter)).ceil();
-        let bond_time = bond_time_secs(parameters.bond, world.gravity.magnitude(), distance);
+        let acceleration = parameters.cohesion_acceleration(world.gravity.magnitude());
+        let bond_time = bond_time_secs(parameters.bond, acceleration, distance);
         let of_bonds = (whole / (SUBSTEP_IN_BOND_TIMES * bond_time)).ceil();
-        let pull = cohesion_force(parameters.bond, 1.0, world.gravity.magnitude());
+        let pull = cohesion_force(parameters.bond, 1.0, acceleration);
         let circling = of_bonds > 1.0 && circling_looks_like_a_shock(state, whole, pull, distance);
         let substeps = of_travel.max(of_bonds).clamp(1.0, MOST_SUBSTEPS) as u32;
         let longest_secs = MOST_SUBSTEPS * SUBSTEP_IN_BOND_TIMES * bond_time;
