@@ -125,7 +125,7 @@ fn a_step_that_is_longer_than_the_run_is_refused() {
 fn substeps_of_very_small_grains_are_told_of_before_they_begin() {
     let folder = folder();
     let mut discs = "x,y,radius\n0,0.02,0.01\n".to_owned();
-    discs.push_str("0.1,0.02,1e-7\n");
+    discs.push_str("0.1,0.02,3e-6\n");
     let path = folder.path().join("discs.csv");
     write(&path, discs);
     let run =

@@ -53,6 +53,14 @@ impl Parts for f64 {
     }
 }
 
+/// A number > 0 to two digits, not above itself.
+pub(crate) fn rounded_down(number: f64) -> f64 {
+    let unit = libm::pow(10.0, libm::log10(number).floor() - 1.0);
+    let below = (number / unit).floor() * unit;
+    // As it is written, without the rounding of the product.
+    format!("{below:.1e}").parse().unwrap_or(below)
+}
+
 #[cfg(test)]
 mod tests {
     use super::Parts;

@@ -348,3 +348,33 @@ fn springs_are_set_by_options_and_the_manifest_tells_what_follows() {
         assert!(said.contains(&option[2..]) && said.contains("≥ 0"), "{said}");
     }
 }
+
+#[test]
+fn springs_that_no_number_of_substeps_keeps_stable_are_refused_with_those_that_are_not() {
+    let mut scene = by(Stepper::Dem, 0, meeting(Physics::FULL, 0.5, 1e-3));
+    scene.parameters.stiffness = 1e15;
+    let refused = |scene: &Scene| scene.simulation().expect_err("too stiff").to_string();
+    let sentence = refused(&scene);
+    assert!(sentence.starts_with("stiffness is 1e15, but must be at most "), "{sentence}");
+    assert!(sentence.ends_with("would need more than 100000 substeps"), "{sentence}");
+    let number = |sentence: &str| -> f64 {
+        let (_, rest) = sentence.split_once("at most ").expect("the most");
+        rest.split_once(' ').expect("a unit").0.parse().expect("a number")
+    };
+    scene.parameters.stiffness = number(&sentence);
+    let substeps = start(&scene).substeps();
+    assert!((90_000..=100_000).contains(&substeps), "{substeps}");
+    scene.parameters.stiffness *= 1.2;
+    assert!(scene.simulation().is_err(), "a little more");
+
+    let (mut run, stiff) = (start(&by(Stepper::Dem, 0, meeting(LINE, 0.5, 1e-3))), 1e15);
+    let too_stiff = Parameters { stiffness: stiff, ..*run.parameters() };
+    assert!(run.set_parameters(too_stiff).is_err(), "on the way");
+
+    scene.parameters.stiffness = 0.0;
+    scene.parameters.time_step_secs = 1e4;
+    let sentence = refused(&scene);
+    assert!(sentence.starts_with("dt is 10000, but must be at most "), "{sentence}");
+    scene.parameters.time_step_secs = number(&sentence);
+    start(&scene);
+}

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::Feature;
 use crate::error::legible;
+use crate::number::rounded_down;
 use crate::setting::words;
 use crate::sim::losses::Losses;
 use crate::sim::{Observables, Settings, Stepper};
@@ -101,14 +102,6 @@ impl Alarm {
             }
         }
     }
-}
-
-/// A number > 0 to two digits, not above itself.
-fn rounded_down(number: f64) -> f64 {
-    let unit = libm::pow(10.0, libm::log10(number).floor() - 1.0);
-    let below = (number / unit).floor() * unit;
-    // As it is written, without the rounding of the product.
-    format!("{below:.1e}").parse().unwrap_or(below)
 }
 
 /// What watches over a simulation. Part of it, so that a moment that is computed anew tells the same.

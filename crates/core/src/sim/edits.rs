@@ -163,6 +163,7 @@ impl Simulation {
         let density = grown.grains.masses[0] / grown.grains.radii[0].powi(2) / std::f64::consts::PI;
         grown.grains.push(&Grain { velocity, ..Grain::at_rest(position, radius) }, density);
         grown.validate(self.state.physics)?;
+        self.settings.check_in(&grown, self.state.physics)?;
         self.state.add_last_grain(grown)?;
         self.watch.losses.add(position);
         self.initial_heights += position.y;

@@ -184,7 +184,8 @@ impl Settings {
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
-        self.check_shear(world.periodic)
+        self.check_shear(world.periodic)?;
+        (self.stepper.info().check_in)(world, physics, &self.parameters)
     }
 
     /// Checks that there is a gravity that can be tilted, if it is.

@@ -12,7 +12,7 @@ use crate::number::Parts;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::spring_dashpot::{
-    SpringDashpot, contact_time_secs, critical_time_step_secs, substeps,
+    SpringDashpot, check_substeps, contact_time_secs, critical_time_step_secs, substeps,
 };
 use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
 use crate::sim::steppers::{StepperInfo, fracture_work_of};
@@ -26,6 +26,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
     settings: "bond bond-acceleration dt tilt rho mu cone stiffness damping-ratio substeps",
     takes_drives: true,
+    check_in: check_substeps,
     substeps,
     critical_time_step_secs: |world, physics, parameters| {
         Some(critical_time_step_secs(world, physics, parameters))

@@ -54,6 +54,8 @@ pub struct StepperInfo {
     pub takes_drives: bool,
     /// Refuses numbers that do not go with it.
     pub check: fn(&Parameters) -> Result<()>,
+    /// Refuses numbers that do not go with it in a world.
+    pub check_in: fn(&World, Physics, &Parameters) -> Result<()>,
     /// Substeps of a step; 1 where its problem is solved as a whole.
     pub substeps: fn(&World, Physics, &Parameters) -> u32,
     /// The longest substep, s, that is stable whatever the grains do; none where that is no question.
@@ -73,6 +75,7 @@ impl StepperInfo {
         observables: &[],
         takes_drives: false,
         check: |_| Ok(()),
+        check_in: |_, _, _| Ok(()),
         substeps: |_, _, _| 1,
         critical_time_step_secs: |_, _, _| None,
         contact_time_secs: |_, _, _| None,
@@ -155,8 +158,8 @@ impl StepperMemory {
 pub struct FractureWork {
     /// J.
     pub joules: f64,
-    /// In m·g·d, which lifts one of the grains by a diameter. Without gravity the acceleration of the cohesion force takes
-    /// the place of g; 0 where there is neither.
+    /// In m·g·d, which lifts one of the grains by a diameter. Without gravity the acceleration of the cohesion force
+    /// takes the place of g; 0 without both.
     pub over_mgd: f64,
 }
 

@@ -34,6 +34,8 @@
 //! mode of the whole is faster than the fastest one of a contact by itself, ω² = z k/m_ij, ζ√z.
 //! With k_t = k m_t/m_n and γ_t = γ m_t/m_n the tangential mode is as fast as the normal one.
 
+use crate::error::{Error, Result};
+use crate::number::rounded_down;
 use crate::sim::pull::acceleration_of_springs;
 use crate::sim::steppers::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
@@ -174,14 +176,53 @@ pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Pa
     springs.contact_time_secs(effective_mass_of_mean(world))
 }
 
-/// As many substeps as are asked for, or as keep h at the safe fraction of the critical step.
+/// As many substeps as are asked for, or as are stable ([`check_substeps`] refuses more than there may be).
 pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters) -> u32 {
-    if parameters.substeps > 0 {
-        return parameters.substeps;
+    match parameters.substeps {
+        0 => (stable_substeps(world, physics, parameters) as u32).clamp(1, MAX_SUBSTEPS),
+        asked => asked,
     }
+}
+
+/// Number of substeps that keeps h at the safe fraction of the critical step, however many these are.
+pub(super) fn stable_substeps(
+    world: &World,
+    physics: Physics,
+    parameters: &Parameters,
+) -> f64 {
     let longest_secs = SAFE_FRACTION * critical_time_step_secs(world, physics, parameters);
-    let count = (parameters.time_step_secs / longest_secs).ceil();
-    (count as u32).clamp(1, MAX_SUBSTEPS)
+    (parameters.time_step_secs / longest_secs).ceil()
+}
+
+/// Refuses springs that are so stiff, or steps that are so long, that no number of substeps which a step may have is
+/// stable.
+pub(super) fn check_substeps(
+    world: &World,
+    physics: Physics,
+    parameters: &Parameters,
+) -> Result<()> {
+    let Parameters { stiffness, time_step_secs, substeps, .. } = *parameters;
+    let most = f64::from(MAX_SUBSTEPS);
+    if substeps > 0 || !(stable_substeps(world, physics, parameters) > most) {
+        return Ok(());
+    }
+    let critical_with = |stiffness: f64| {
+        let springs = Parameters { stiffness, ..*parameters };
+        critical_time_step_secs(world, physics, &springs)
+    };
+    let need = format!("would need more than {MAX_SUBSTEPS} substeps");
+    if stiffness > 0.0 {
+        // The critical step falls as the root of the stiffness.
+        let root = most * SAFE_FRACTION * critical_with(1.0) / time_step_secs;
+        let most_stiff = rounded_down(root * root);
+        let allowed = format!(
+            "at most {most_stiff:e} N/m where dt is {time_step_secs} s: stiffer springs {need}"
+        );
+        return Err(Error::value("stiffness", stiffness, allowed));
+    }
+    let longest_secs = rounded_down(most * SAFE_FRACTION * critical_with(stiffness));
+    let allowed = format!("at most {longest_secs:e} s where stepper is dem: a longer step {need}");
+    Err(Error::value("dt", time_step_secs, allowed))
 }
 
 #[cfg(test)]
