@@ -32,7 +32,9 @@ pub(crate) fn exception(error: Error) -> PyErr {
         Error::Value { .. } | Error::Options(_) => InputError::new_err(sentence),
         Error::File { .. } => classes::FileError::new_err(sentence),
         Error::NonFinite { .. } => classes::NotFiniteError::new_err(sentence),
-        Error::Renderer(_) | Error::Interrupted { .. } => classes::Error::new_err(sentence),
+        Error::Renderer(_) | Error::Interrupted { .. } | Error::SolveInterrupted { .. } => {
+            classes::Error::new_err(sentence)
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod studies;
 
 pub use help::command;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -17,12 +18,15 @@ use crate::error::{Error, Result, check};
 use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use crate::output::{
-    Progress, check_file, ignore_file_size_signal, lost_stdout, note_line, note_printed,
-    print_line, print_text, resolved, warn_of_steps, write_file,
+    Progress, Signal, caught_signal, check_file, heed_signals, ignore_file_size_signal,
+    lost_stdout, note_line, note_printed, print_line, print_text, resolved, warn_of_steps,
+    write_file,
 };
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
 use crate::sim::Stepper;
-use crate::solver::{FrictionModel, METHODS, Method, SolverSettings, StopTest};
+use crate::solver::{
+    FrictionModel, METHODS, Method, SolveProgress, SolverSettings, StopTest, look_on,
+};
 use crate::threads::check_threads;
 use studies::StudyCommand;
 
@@ -111,7 +115,9 @@ pub fn main() -> ExitCode {
     ignore_file_size_signal();
     let parsed = check_stack().map_err(|error| (REFUSED, error.to_string())).and_then(|()| parse());
     let said = |error: Error| match error {
-        Error::Interrupted { exit_code, .. } => (exit_code, error.to_string()),
+        Error::Interrupted { exit_code, .. } | Error::SolveInterrupted { exit_code, .. } => {
+            (exit_code, error.to_string())
+        }
         _ => (REFUSED, error.to_string()),
     };
     let done = parsed.and_then(|cli| cli.map_or(Ok(()), run).map_err(said));
@@ -356,18 +362,39 @@ impl ProblemCommand {
                     max_sweeps,
                     ..SolverSettings::SWEEPS
                 };
+                heed_signals();
+                look_on(move |progress| show_progress(progress, tolerance));
                 let solution = solve_file(&problem, &settings, repeat)?;
-                print_solution(&solution);
-                match out {
-                    Some(out) => write_file(&out, solution.text().as_bytes()),
-                    None => Ok(()),
+                let signal = caught_signal().filter(|_| !solution.converged);
+                print_solution(&solution, max_sweeps, signal);
+                if let Some(out) = out {
+                    write_file(&out, solution.text().as_bytes())?;
                 }
+                signal.map_or(Ok(()), |signal| {
+                    let (exit_code, sweeps) = (signal.exit_code(), solution.sweeps);
+                    Err(Error::SolveInterrupted { signal: signal.name(), exit_code, sweeps })
+                })
             }
         }
     }
 }
 
-fn print_solution(solution: &Solution) {
+/// Sweeps from which on a solve says how far it is. Fewer: short solves say so, too.
+const LONG_SOLVE_SWEEPS: u32 = 4_096;
+
+/// Says how far a long solve is, and ends it where a signal came.
+fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {
+    let SolveProgress { sweeps, residual } = progress;
+    if let Some(residual) = residual.filter(|_| sweeps >= LONG_SOLVE_SWEEPS) {
+        note_line(format_args!(
+            "slump: after {sweeps} sweeps the residual is {residual:.3e}; the goal is {tolerance:e}"
+        ));
+    }
+    caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
+}
+
+/// Prints a solution that was to take no more than so many sweeps, and the signal that ended it, if one did.
+fn print_solution(solution: &Solution, max_sweeps: u32, signal: Option<Signal>) {
     let Solution { contacts, method, sweeps, factorisations, seconds, residual, .. } = solution;
     print_line(format_args!("contacts        {contacts}"));
     print_line(format_args!(
@@ -378,10 +405,14 @@ fn print_solution(solution: &Solution) {
     print_line(format_args!("factorisations  {factorisations}"));
     print_line(format_args!("seconds         {seconds:.3e}"));
     print_line(format_args!("residual        {residual:.3e}"));
-    let converged = match (solution.converged, solution.stalled) {
-        (true, _) => "yes",
-        (false, true) => "no: stalled, more sweeps are of no use",
-        (false, false) => "no: stopped too early",
+    let converged = match (solution.converged, signal) {
+        (true, _) => "yes".to_owned(),
+        (false, Some(signal)) => format!("no: stopped by {}", signal.name()),
+        (false, None) if solution.stalled => "no: stalled, more sweeps are of no use".into(),
+        (false, None) if *sweeps >= max_sweeps => {
+            format!("no: all {max_sweeps} sweeps were used; --max-sweeps allows more")
+        }
+        (false, None) => format!("no: {method} gave up"),
     };
     print_line(format_args!("converged       {converged}"));
 }

@@ -1,6 +1,8 @@
 //! Runs that are stopped, killed, or fill the disk: what they came to stays, and is told.
 #![cfg(unix)]
 
+use std::io::{BufRead, BufReader};
+
 use crate::program::*;
 
 /// A run that goes on for minutes, with a picture for each 40 steps, and where its option for a place goes.
@@ -257,4 +259,72 @@ fn a_scale_that_is_none_or_of_nothing_is_refused() {
         assert!(said.contains(expected), "{more:?}: {said}");
     }
     assert!(!folder.path().join("out").exists());
+}
+
+/// A chain of contacts without friction, each of which pushes the next: sweeps carry a push on by one contact each, so
+/// that they need millions for a long chain.
+fn chain(contacts: usize, path: &Path) {
+    let (mut row, mut col, mut val) = (Vec::new(), Vec::new(), Vec::new());
+    let mut add = |at: [usize; 2], value: f64| {
+        row.push(at[0]);
+        col.push(at[1]);
+        val.push(value);
+    };
+    for contact in 0..contacts {
+        add([2 * contact; 2], 2.0);
+        add([2 * contact + 1; 2], 6.0);
+        if contact > 0 {
+            add([2 * contact, 2 * contact - 2], -1.0);
+            add([2 * contact - 2, 2 * contact], -1.0);
+        }
+    }
+    let mut q = vec![0.0; 2 * contacts];
+    q[0] = -1.0;
+    let entries = serde_json::json!({ "row": row, "col": col, "val": val });
+    let problem = serde_json::json!({ "nc": contacts, "mu": 0.0, "q": q, "W": entries });
+    write(path, problem.to_string());
+}
+
+#[test]
+fn a_long_solve_says_how_far_it_is_and_whether_its_budget_ended_it() {
+    let folder = folder();
+    let problem = folder.path().join("chain.json");
+    chain(300, &problem);
+    let solved = |sweeps: &str| {
+        let output = run(slump("problem solve").arg(&problem).args(["--max-sweeps", sweeps]));
+        assert!(output.status.success(), "{}", said(&output));
+        let told = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
+        (told(output.stdout), told(output.stderr))
+    };
+    let (stdout, stderr) = solved("5000");
+    assert!(stdout.contains("no: all 5000 sweeps were used; --max-sweeps allows more"), "{stdout}");
+    assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    assert!(stderr.starts_with("slump: after 4096 sweeps the residual is "), "{stderr}");
+    // The advice of that sentence.
+    let (stdout, stderr) = solved("1000000");
+    assert!(stdout.contains("converged       yes"), "{stdout}");
+    assert!(stderr.lines().count() > 1, "{stderr}");
+    let (_, short) = solved("100");
+    assert_eq!(short, "", "a short solve says nothing on the way");
+}
+
+#[test]
+fn a_signal_ends_a_long_solve_with_the_impulses_that_it_had() {
+    let folder = folder();
+    let [problem, out] = ["chain.json", "solution.json"].map(|name| folder.path().join(name));
+    chain(20_000, &problem);
+    let mut command = slump("problem solve");
+    command.arg(&problem).arg("--out").arg(&out).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    let mut stderr = BufReader::new(child.stderr.take().expect("stderr"));
+    let mut line = String::new();
+    stderr.read_line(&mut line).expect("a line");
+    assert!(line.contains("after 4096 sweeps"), "{line}");
+    send("INT", child.id().into());
+    assert_eq!(ended(&mut child), Some(130));
+    let stdout = std::io::read_to_string(child.stdout.take().expect("stdout")).expect("UTF-8");
+    assert!(stdout.contains("converged       no: stopped by SIGINT"), "{stdout}");
+    let said = std::io::read_to_string(stderr).expect("UTF-8");
+    assert!(said.contains("slump: stopped by SIGINT after "), "{said}");
+    assert_eq!(json(&out)["r"].as_array().map(Vec::len), Some(40_000));
 }

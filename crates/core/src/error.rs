@@ -41,6 +41,16 @@ pub enum Error {
         /// The simulated time of that step.
         time_secs: f64,
     },
+    /// A solve that a signal ended. The impulses that it had by then have been written.
+    #[error("stopped by {signal} after {sweeps} sweeps")]
+    SolveInterrupted {
+        /// Name of the signal.
+        signal: &'static str,
+        /// The program's exit code.
+        exit_code: u8,
+        /// Sweeps until then.
+        sweeps: u32,
+    },
     /// A simulation whose state is no longer finite.
     #[error(
         "{}",

@@ -4,6 +4,7 @@
 //! * `problem/`: the problem's data, how it is set up, and its residual.
 //! * `method`, `settings`: the methods by name, and how well a step is to be solved.
 //! * `methods/`: what solves a problem, a file or folder a method. `solve` picks from them.
+//! * `onlooker`: who sees how far a long solve is.
 //! * `linear/`: the sparse factorisations that some of them use.
 //! * `delassus/`: problems in the Delassus operator alone.
 
@@ -13,6 +14,7 @@ mod linear;
 mod method;
 mod methods;
 mod model;
+mod onlooker;
 mod problem;
 mod settings;
 mod solve;
@@ -31,6 +33,7 @@ pub use methods::sweep;
 pub use methods::{BodySystem, ContactSystem, Memory, ScaledVector, SolveReport};
 pub(crate) use model::cone_of;
 pub use model::{ModelParts, Slot, Slots};
+pub use onlooker::{SolveProgress, is_ended, look_on};
 pub use problem::{
     Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures,
     MovingSurfaces, PairRow, ProblemNumbers, Row, RowVelocities, StepProblem, Surface,

@@ -33,6 +33,7 @@ use super::stopping::SolveReport;
 use crate::contact::law::{coulomb, signorini};
 use crate::solver::kinematics::Model;
 use crate::solver::linear::{BlockMatrix, ContactGraph};
+use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::{Row, StepProblem, residual};
 use crate::solver::settings::SolverSettings;
 
@@ -133,6 +134,9 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         let mut compliance = FIRST_COMPLIANCE;
         let mut sweeps_between = SWEEPS_BETWEEN;
         while report.sweeps + SWEEPS_AFTER <= most_sweeps && history.since_milestone < PATIENCE {
+            if is_ended(SolveProgress { sweeps: report.sweeps, residual: None }) {
+                break;
+            }
             self.newton_step(compliance);
             report.factorisations += 1;
             for _ in 1..SWEEPS_AFTER {

@@ -11,6 +11,7 @@
 //! now and then, and only where all stall is there a floor.
 
 use super::sweep::ImpulseChange;
+use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::VelocityError;
 use crate::solver::settings::{SolverSettings, StopTest};
 
@@ -136,9 +137,9 @@ impl Default for StallWatch {
 }
 
 impl StallWatch {
-    /// Looks at the residual after a number of sweeps, now and then only. Tells whether to stop:
-    /// where a residual is aimed at, nothing is gained by more sweeps. Other stopping tests are
-    /// those of published schemes, which sweep on.
+    /// Looks at the residual after a number of sweeps, now and then only. Tells whether to stop: an onlooker may ask
+    /// for it, and a solve that aims at a residual may gain nothing by more sweeps. Other stopping tests are those of
+    /// published schemes, which sweep on.
     pub(super) fn look(
         &mut self,
         sweeps: u32,
@@ -146,10 +147,13 @@ impl StallWatch {
         residual: impl FnOnce() -> f64,
     ) -> bool {
         if sweeps < self.next_look {
-            return false;
+            return is_ended(SolveProgress { sweeps, residual: None });
         }
         self.next_look = 2 * sweeps;
         self.looks = [self.looks[1], residual()];
+        if is_ended(SolveProgress { sweeps, residual: Some(self.looks[1]) }) {
+            return true;
+        }
         let is_flat = self.looks[1] >= FLAT * self.looks[0];
         self.in_vain = if is_flat { self.in_vain + 1 } else { 0 };
         self.in_vain >= LOOKS_IN_VAIN && settings.stop.judges_solutions()

@@ -15,6 +15,7 @@ use super::system::{for_each_change, push_all};
 use super::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
 use crate::solver::kinematics::Model;
 use crate::solver::methods::stopping::SolveReport;
+use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::velocity_error;
 
 /// Least and largest share of the present mean product that a step aims at.
@@ -234,9 +235,10 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         self.report
     }
 
-    /// True where as many sweeps and factorisations were made as the settings allow.
+    /// True where as many sweeps and factorisations were made as the settings allow, or an onlooker ends the solve.
     pub(super) fn is_spent(&self) -> bool {
-        self.report.sweeps + self.report.factorisations >= self.settings.max_sweeps
+        let sweeps = self.report.sweeps + self.report.factorisations;
+        sweeps >= self.settings.max_sweeps || is_ended(SolveProgress { sweeps, residual: None })
     }
 
     /// Follows the path as far as it leads; where that is not to its end, the impulses are the best on the way.
