@@ -322,7 +322,8 @@ pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
 /// Says on stderr how many steps were not solved as asked.
 pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     let Tally { steps, unconverged_steps, stalled_steps, largest_velocity_error, .. } = *tally;
-    if unconverged_steps == 0 {
+    // A scheme has neither tolerance nor sweeps that it could miss.
+    if unconverged_steps == 0 || !scene.stepper.uses_method() {
         return;
     }
     note_line(legible(&format!(

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::stored_moments::StoredMoment;
 use super::{Controls, Curve, LiveStart, LoadingProgress, PastRun, WorldHistory};
-use crate::sim::{Alarm, AlarmKind, FractureWork, Snapshot, Surroundings};
+use crate::sim::{AlarmKind, FractureWork, Snapshot, Surroundings};
 use crate::solver::Method;
 use crate::world::Gravity;
 
@@ -167,11 +167,12 @@ impl WorldFrame {
 /// raised under.
 fn alarms(world: &WorldHistory) -> Vec<WorldAlarm> {
     let simulation = &world.simulation;
-    let at_start = Alarm::of_start(simulation.observables());
-    let alarms = simulation.alarms().iter().copied().chain(at_start);
+    let alarms = simulation.alarms().iter().copied().chain(simulation.alarm_on_placed());
     let told = alarms.filter(|alarm| alarm.kind != AlarmKind::NotFinite).map(|alarm| {
         let now = *simulation.settings();
-        let then = world.record.settings_of_step(alarm.step).unwrap_or(now);
+        // Places are judged by the settings of the next step.
+        let step = alarm.step + u64::from(alarm.kind == AlarmKind::PlacedInOverlap);
+        let then = world.record.settings_of_step(step).unwrap_or(now);
         let text = alarm.message(&then);
         let is_earlier = then != now;
         let text = if is_earlier { format!("under earlier settings: {text}") } else { text };

@@ -47,9 +47,9 @@ fn a_state_that_begins_in_alarm_says_so_before_the_first_step() {
 
 #[test]
 fn an_alarm_advises_on_the_settings_that_it_was_raised_under() {
-    let mut robot = Robot::open(scene("overlap"));
+    let mut robot = Robot::open(scene("thin-wall"));
     let before = robot.settings();
-    robot.key(egui::Key::ArrowRight);
+    robot.take_steps(40);
     let mut settings = before;
     settings.parameters.time_step_secs *= 0.1;
     robot.change(0, settings);

@@ -56,8 +56,7 @@ pub enum Error {
         "{}",
         legible(&format!(
             "the state is no longer finite at step {step} (t = {time_secs} s) with Bond {bond}, \
-             time step {time_step_secs} s, restitution {restitution}, friction {friction}; \
-             a smaller time step is the change most likely to help"
+             time step {time_step_secs} s, restitution {restitution}, friction {friction}; {advice}"
         ))
     )]
     NonFinite {
@@ -73,6 +72,8 @@ pub enum Error {
         restitution: f64,
         /// Friction in force.
         friction: f64,
+        /// The change that is most likely to help.
+        advice: String,
     },
 }
 
@@ -235,8 +236,16 @@ mod tests {
         assert_eq!(said("0.1234567890123456"), "bond is 0.1234567890123456, but must be a number");
         let [bond, time_step_secs] = [f64::MAX, 1e-300];
         let (step, time_secs, restitution, friction) = (1, time_step_secs, 0.0, 0.5);
-        let gone =
-            Error::NonFinite { step, time_secs, bond, time_step_secs, restitution, friction };
+        let advice = String::new();
+        let gone = Error::NonFinite {
+            step,
+            time_secs,
+            bond,
+            time_step_secs,
+            restitution,
+            friction,
+            advice,
+        };
         let gone = gone.to_string();
         assert!(gone.contains("Bond 1.7976931348623157e308, time step 1e-300 s"), "{gone}");
         for long in

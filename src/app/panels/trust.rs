@@ -43,14 +43,15 @@ pub(crate) struct RunBudget {
 /// The word on the run that is shown.
 pub(super) fn word(state: &AppState) -> Trust {
     let Some(world) = state.world() else { return Trust::NotKnownYet };
-    let is_bad = |kind| world.alarms.iter().any(|alarm| alarm.kind == kind);
+    const BAD: [AlarmKind; 3] = [
+        AlarmKind::NotFinite,
+        AlarmKind::GrainLost,
+        AlarmKind::GrainLeft,
+    ];
+    let is_bad = world.alarms.iter().any(|alarm| BAD.contains(&alarm.kind));
     let steps = world.snapshot.observables.step.max(1);
     let unsolved = world.unconverged_steps as f64;
-    if world.failure.is_some()
-        || is_bad(AlarmKind::NotFinite)
-        || is_bad(AlarmKind::GrainLost)
-        || unsolved > FEW * steps as f64
-    {
+    if world.failure.is_some() || is_bad || unsolved > FEW * steps as f64 {
         return Trust::No;
     }
     of_budget(state).map_or(Trust::NotKnownYet, |(trust, _)| trust)

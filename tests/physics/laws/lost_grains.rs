@@ -12,6 +12,10 @@ fn world(gravity: f64, grains: Vec<Grain>, boundaries: Vec<Boundary>) -> Scene {
     Scene { boundaries, ..scene(Physics::FULL, DVec2::new(0.0, -gravity), parameters, grains) }
 }
 
+fn is_on_loss(kind: AlarmKind) -> bool {
+    [AlarmKind::GrainLost, AlarmKind::GrainLeft].contains(&kind)
+}
+
 fn at(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }
@@ -20,7 +24,7 @@ fn at(x: f64, y: f64) -> DVec2 {
 #[track_caller]
 fn lost(run: &Simulation) -> u32 {
     let lost = run.observables().lost_grains;
-    let told = run.alarms().iter().any(|alarm| alarm.kind == AlarmKind::GrainLost);
+    let told = run.alarms().iter().any(|alarm| is_on_loss(alarm.kind));
     assert_eq!(told, lost > 0, "{lost} lost, {:?}", run.alarms());
     lost
 }

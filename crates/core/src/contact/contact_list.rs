@@ -192,6 +192,11 @@ impl ContactList {
         ContactParts { contacts, found_in, impulses, memories, sums: &mut self.sums }
     }
 
+    /// The step that each contact was first found in.
+    pub(crate) fn found_in(&self) -> &[u64] {
+        &self.now.found_in
+    }
+
     /// The contacts with their bonds, one a contact; they mean something under the law `range` alone.
     pub(crate) fn bonds(&self) -> &[Bond] {
         &self.now.bonds

@@ -1,30 +1,36 @@
 //! What a run says when it goes wrong: in which way, since when, and the one change that is most
-//! likely to help.
+//! likely to help. [`Watch`] raises alarms, and `advice` chooses the changes.
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::Feature;
+use crate::contact::{Numbering, Other};
 use crate::error::legible;
 use crate::number::rounded_down;
 use crate::setting::words;
-use crate::sim::losses::Losses;
-use crate::sim::{Observables, Settings, Stepper};
-use crate::solver::{FrictionModel, Method};
-use crate::world::{Physics, World};
+use crate::sim::advice::{self, Advice};
+use crate::sim::losses::{Losses, NewLosses};
+use crate::sim::state::State;
+use crate::sim::{Observables, Settings};
 
 /// Steps in a row at the sweep limit that raise an alarm. Fewer: single hard steps, which do no
 /// harm, would raise it.
 const STEPS_AT_LIMIT: u32 = 100;
-/// Overlap of a contact that raises an alarm, in d: the paper's own curves end at 0.06.
+/// Overlap of a contact that raises an alarm, in diameters of its smaller disc: the paper's own curves end at 0.06.
 const LARGEST_OVERLAP: f64 = 0.05;
-
+/// Growth of an overlap that grains were placed with, in the same unit, that counts as a new overlap. Smaller values
+/// count the errors that a solver's tolerance allows.
+const GROWTH_OF_OVERLAP: f64 = 0.01;
 words! {
     /// A way to go wrong.
     pub enum AlarmKind {
         NotFinite = "not-finite", "the state is no longer finite";
-        GrainLost = "grain-lost", "a grain has gone through a wall or left the world";
+        GrainLost = "grain-lost", "a grain has gone through a wall";
+        GrainLeft = "grain-left", "a grain has left the world";
         SweepLimit = "sweep-limit", "100 steps in a row were not solved to their tolerance";
-        Overlap = "overlap", "a contact overlaps by more than 5 % of a diameter";
+        Overlap = "overlap", "a contact overlaps by more than 5 % of the diameter of its smaller disc";
+        PlacedInOverlap = "placed-in-overlap",
+            "a grain was placed on a grain or a wall, with an overlap of more than 5 % of a diameter";
+        NoCohesion = "no-cohesion", "Bond is above 0, but no contact pulls";
         BreakUnseen = "break-unseen", "bonds break faster than the substeps of a step can follow";
     }
 }
@@ -38,73 +44,44 @@ pub struct Alarm {
     pub step: u64,
     /// Simulated time of that step, s.
     pub time_secs: f64,
+    /// The change that is most likely to help.
+    pub advice: Advice,
     /// The longest time step that would do, s, where that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_time_step_secs: Option<f64>,
+    /// The stiffness of the springs that gave way, N/m, if stiffer ones would help.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<f64>,
 }
 
 impl Alarm {
     /// What happened, since when, and what is most likely to help, in one sentence.
     pub fn message(&self, settings: &Settings) -> String {
         let Self { kind, step, time_secs, .. } = self;
-        let advice = self.advice(settings);
+        let advice = self.advice_in_words(settings);
         legible(&format!("{} (step {step}, t = {time_secs:.4} s): {advice}", kind.hint()))
     }
 
-    /// What is wrong with a state that no step has led to yet.
-    pub fn of_start(observables: &Observables) -> Option<Self> {
-        let Observables { step, time_secs, max_overlap, .. } = *observables;
-        let overlaps = step == 0 && max_overlap > LARGEST_OVERLAP;
-        overlaps.then_some(Self {
-            kind: AlarmKind::Overlap,
-            step,
-            time_secs,
-            longest_time_step_secs: None,
-        })
-    }
-
-    fn advice(&self, settings: &Settings) -> String {
-        let Settings { stepper, parameters, solver, .. } = settings;
-        let smaller = self.longest_time_step_secs.map_or_else(
-            || format!("try a time step below {} s", parameters.time_step_secs),
-            |secs| format!("try a time step of at most {:e} s", rounded_down(secs)),
-        );
-        match self.kind {
-            AlarmKind::NotFinite if stepper.reads("substeps") && parameters.substeps > 0 => {
-                let stable = match stepper {
-                    Stepper::Dem => ", or 0 for as many as are stable",
-                    _ => "",
-                };
-                format!("try more than {} substeps{stable}", parameters.substeps)
+    fn advice_in_words(&self, settings: &Settings) -> String {
+        let Settings { parameters, solver, .. } = settings;
+        match (self.advice, self.longest_time_step_secs, self.stiffness) {
+            (Advice::TimeStep, None, _) => {
+                format!("try a time step below {} s", parameters.time_step_secs)
             }
-            AlarmKind::Overlap if self.step == 0 => {
-                "it begins so; the remedy push-out takes overlap away".into()
+            (Advice::TimeStep, Some(secs), _) => {
+                format!("try a time step of at most {:e} s", rounded_down(secs))
             }
-            AlarmKind::NotFinite
-            | AlarmKind::GrainLost
-            | AlarmKind::Overlap
-            | AlarmKind::BreakUnseen => smaller,
-            AlarmKind::SweepLimit
-                if parameters.restitution_threshold == 0.0 && parameters.restitution > 0.0 =>
-            {
-                "try a restitution threshold of 2: wedged contacts ask for bounces that contradict \
-                 each other"
-                    .into()
+            (Advice::Stiffness, _, Some(stiffness)) => {
+                format!("try a stiffness above {stiffness:.2e} N/m")
             }
-            // Under other models newton would be another law.
-            AlarmKind::SweepLimit
-                if solver.method != Method::Newton && solver.model() == FrictionModel::Coulomb =>
-            {
-                "try method newton".into()
-            }
-            AlarmKind::SweepLimit => {
-                format!("try a tolerance above {:e}", solver.tolerance)
-            }
+            (Advice::Sweeps, ..) => format!("try more than {} sweeps", solver.max_sweeps),
+            (Advice::Tolerance, ..) => format!("try a tolerance above {:e}", solver.tolerance),
+            (advice, ..) => advice.hint().to_owned(),
         }
     }
 }
 
-/// What watches over a simulation. Part of it, so that a moment that is computed anew tells the same.
+/// What watches over a simulation. Part of it, so that a moment that is computed again says the same.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Watch {
@@ -112,55 +89,199 @@ pub(super) struct Watch {
     /// One of a kind.
     pub alarms: Vec<Alarm>,
     pub losses: Losses,
+    /// True where grains were placed after the last step.
+    are_placed: bool,
+    /// Least overlap that there was since grains were placed, in diameters of the smaller disc of the deepest contact.
+    placed_overlap: f64,
 }
 
 impl Watch {
-    /// Watches over a world, whose boundaries are `features`, from now on.
-    pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
-        Self { losses: Losses::new(world, features, physics), ..Self::default() }
+    /// Watches over a state at t = 0, whose contacts have been found, from now on.
+    pub(super) fn new(state: &State) -> Self {
+        let losses = Losses::new(&state.world, state.candidates.features(), state.physics);
+        let mut watch = Self { losses, ..Self::default() };
+        watch.place(state);
+        watch
     }
 
-    /// Looks at the state after a step, and leaves grains that are lost out of its slump; `features`
-    /// are those of the boundaries where they are now.
+    /// Takes the grains of a state, whose contacts have been found, as placed there.
+    pub(super) fn place(&mut self, state: &State) {
+        self.losses.place(&state.world.grains.positions);
+        (self.are_placed, self.placed_overlap) = (true, DeepestContact::of(state).overlap);
+    }
+
+    /// What is wrong with grains as they were placed, before the step after these observables.
+    pub(super) fn of_placed(
+        &self,
+        observables: &Observables,
+        settings: &Settings,
+    ) -> Option<Alarm> {
+        let &Observables { step, time_secs, .. } = observables;
+        let overlaps = self.are_placed && self.placed_overlap > LARGEST_OVERLAP;
+        (overlaps && !settings.remedies.push_out).then(|| Alarm {
+            kind: AlarmKind::PlacedInOverlap,
+            step,
+            time_secs,
+            advice: advice::on_placed(settings),
+            longest_time_step_secs: None,
+            stiffness: None,
+        })
+    }
+
+    /// Raises alarms that the next step cannot mend, before it is taken.
+    pub(super) fn look_ahead(&mut self, observables: &Observables, settings: &Settings) {
+        if let Some(alarm) = self.of_placed(observables, settings) {
+            self.add(alarm);
+        }
+        self.are_placed = false;
+    }
+
+    /// Looks at the state after a step, and leaves grains that are lost out of its slump.
     pub(super) fn look(
         &mut self,
-        world: &World,
-        features: &[Feature],
-        walls_move: bool,
+        state: &State,
+        settings: &Settings,
         observables: &mut Observables,
         finite: bool,
     ) {
+        let State { world, candidates, physics, .. } = state;
         self.unfinished_in_a_row =
             if observables.converged { 0 } else { self.unfinished_in_a_row + 1 };
         if finite {
-            self.losses.look(world, features, walls_move);
+            let new = self.losses.look(world, candidates.features(), world.has_motion());
+            self.raise_losses(new, state, settings, observables);
         }
         observables.lost_grains = self.losses.count;
         if observables.lost_grains > 0 {
             observables.slump = self.losses.slump(world);
-            self.raise(AlarmKind::GrainLost, observables, None);
+        }
+        if let Some(advice) = advice::on_no_cohesion(settings, world, *physics) {
+            self.raise_with(AlarmKind::NoCohesion, observables, advice);
         }
         if !finite {
             observables.converged = false;
-            self.raise(AlarmKind::NotFinite, observables, None);
-        } else if self.unfinished_in_a_row >= STEPS_AT_LIMIT {
-            self.raise(AlarmKind::SweepLimit, observables, None);
+            let advice = advice::on_overflow(state, settings);
+            return self.raise_with(AlarmKind::NotFinite, observables, advice);
         }
-        if observables.max_overlap > LARGEST_OVERLAP {
-            self.raise(AlarmKind::Overlap, observables, None);
+        if self.unfinished_in_a_row >= STEPS_AT_LIMIT {
+            let advice = advice::on_unsolved(state, settings, observables.stalled);
+            self.raise_with(AlarmKind::SweepLimit, observables, advice);
+        }
+        let DeepestContact { overlap, found_in } = DeepestContact::of(state);
+        let most = match self.placed_overlap {
+            placed if placed > LARGEST_OVERLAP => placed + GROWTH_OF_OVERLAP,
+            _ => LARGEST_OVERLAP,
+        };
+        // Grains that were placed in overlap fly apart, and may meet hard.
+        if overlap > most && !self.has(AlarmKind::PlacedInOverlap) {
+            // A contact of an earlier step deepens because this one is not solved.
+            let sinks = !observables.converged && found_in < observables.step;
+            self.raise_on_depth(AlarmKind::Overlap, sinks, state, settings, observables);
+        }
+        self.placed_overlap = self.placed_overlap.min(overlap);
+    }
+
+    /// The advice on a state that is no longer finite, in words.
+    pub(super) fn advice_on_overflow(&self, settings: &Settings) -> String {
+        let mut alarms = self.alarms.iter().filter(|alarm| alarm.kind == AlarmKind::NotFinite);
+        alarms.next().map(|alarm| alarm.advice_in_words(settings)).unwrap_or_default()
+    }
+
+    fn raise_losses(
+        &mut self,
+        new: NewLosses,
+        state: &State,
+        settings: &Settings,
+        observables: &Observables,
+    ) {
+        if new.placed {
+            let advice = Advice::OutOfWalls;
+            self.raise_with(AlarmKind::PlacedInOverlap, observables, advice);
+        }
+        if new.through_wall {
+            let sinks = self.unfinished_in_a_row >= STEPS_AT_LIMIT;
+            self.raise_on_depth(AlarmKind::GrainLost, sinks, state, settings, observables);
+        }
+        if new.left {
+            self.raise_with(AlarmKind::GrainLeft, observables, Advice::Enclose);
         }
     }
 
-    /// Raises an alarm, unless there is one of its kind: of a step that was too long for its bonds with the longest that
-    /// is not, s.
+    /// Raises an alarm on bodies that came too deep into each other, because unsolved steps let them sink or not.
+    fn raise_on_depth(
+        &mut self,
+        kind: AlarmKind,
+        sinks: bool,
+        state: &State,
+        settings: &Settings,
+        observables: &Observables,
+    ) {
+        let (advice, stiffness) = match sinks {
+            true => (advice::on_unsolved(state, settings, observables.stalled), None),
+            false => advice::on_depth(state, settings),
+        };
+        let &Observables { step, time_secs, .. } = observables;
+        let longest_time_step_secs = None;
+        self.add(Alarm { kind, step, time_secs, advice, longest_time_step_secs, stiffness });
+    }
+
+    fn raise_with(&mut self, kind: AlarmKind, observables: &Observables, advice: Advice) {
+        let &Observables { step, time_secs, .. } = observables;
+        let (longest_time_step_secs, stiffness) = (None, None);
+        self.add(Alarm { kind, step, time_secs, advice, longest_time_step_secs, stiffness });
+    }
+
+    /// Raises an alarm on a time step, with the longest that would do if that is known, s.
     pub(super) fn raise(
         &mut self,
         kind: AlarmKind,
         &Observables { step, time_secs, .. }: &Observables,
         longest_time_step_secs: Option<f64>,
     ) {
-        if self.alarms.iter().all(|alarm| alarm.kind != kind) {
-            self.alarms.push(Alarm { kind, step, time_secs, longest_time_step_secs });
+        let (advice, stiffness) = (Advice::TimeStep, None);
+        self.add(Alarm { kind, step, time_secs, advice, longest_time_step_secs, stiffness });
+    }
+
+    /// Adds an alarm, unless there is one of its kind.
+    fn add(&mut self, alarm: Alarm) {
+        if !self.has(alarm.kind) {
+            self.alarms.push(alarm);
         }
+    }
+
+    fn has(&self, kind: AlarmKind) -> bool {
+        self.alarms.iter().any(|alarm| alarm.kind == kind)
+    }
+}
+
+/// The contact that overlaps most, by its own size.
+struct DeepestContact {
+    /// Overlap, in diameters of the smaller disc; a wall has none.
+    overlap: f64,
+    /// The step that it was first found in.
+    found_in: u64,
+}
+
+impl DeepestContact {
+    fn of(state: &State) -> Self {
+        let State { world, contacts, .. } = state;
+        let (radii, numbering) = (&world.grains.radii, Numbering::of(world));
+        let mut deepest = Self { overlap: 0.0, found_in: 0 };
+        for (contact, &found_in) in contacts.contacts().iter().zip(contacts.found_in()) {
+            if contact.gap >= 0.0 {
+                continue;
+            }
+            let radius = radii[contact.grain as usize];
+            let radius_of_other = match numbering.other(contact.other) {
+                Other::Grain(grain) => radii[grain],
+                Other::FixedDisc(disc) => world.fixed_discs[disc].radius,
+                Other::Feature(_) => radius,
+            };
+            let overlap = -contact.gap / (2.0 * radius.min(radius_of_other));
+            if overlap > deepest.overlap {
+                deepest = Self { overlap, found_in };
+            }
+        }
+        deepest
     }
 }

@@ -97,9 +97,12 @@ impl Simulation {
             });
         }
         check_distances(&world)?;
-        self.watch.losses.place(&world.grains.positions);
         self.state.world = world;
-        self.state.look_anew()
+        self.state.look_anew()?;
+        let mut placed = self.clone();
+        placed.observe_start();
+        self.watch.place(&placed.state);
+        Ok(())
     }
 
     /// Sets all grains' velocities, m/s.

@@ -16,8 +16,8 @@ use crate::world::{Physics, World};
 
 /// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
 const ROOM_IN_SIDES: f64 = 3.0;
-/// How deep a centre is in a solid, or below all that was there at the start, when it is lost, in d. A
-/// half-space may push it out again; it stays lost, since where it was is no place of the scene.
+/// How deep a centre is in a solid, or below all that was there at the start, when its grain is lost, in diameters of
+/// that grain. A half-space may push it out again; it stays lost, since where it was is no place of the scene.
 const LOST_DEPTH: f64 = 1.0;
 /// Length of a way that is looked at, in radii. Longer: one around the end of a wall might cut it;
 /// shorter: every step costs as much as one in a collapse.
@@ -36,7 +36,7 @@ pub(super) struct Losses {
     world: Edges,
     /// On a line nothing can slump.
     on_line: bool,
-    /// True where all grains have been looked at once: some may be in a wall from the start.
+    /// True where all grains have been looked at since they were placed: some may have been placed in a wall.
     begun: bool,
     /// Two points of each wall when it was looked at last, m; none where no motion carries any.
     frames: Vec<[DVec2; 2]>,
@@ -49,8 +49,19 @@ struct Edges {
     /// Corners, m; none where nothing is fixed, on open ground, or where what is fixed goes: grains may go where they
     /// like.
     corners: Option<[DVec2; 2]>,
-    /// A direction and how far it goes, m: down, to below all that was there at the start.
+    /// A direction and how far it goes, m: down, to the lowest of all that was there at the start.
     bottom: Option<(DVec2, f64)>,
+}
+
+/// In which ways grains were lost since the last look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct NewLosses {
+    /// True if one went through a wall.
+    pub through_wall: bool,
+    /// True if one left the world.
+    pub left: bool,
+    /// True if one was placed in a wall.
+    pub placed: bool,
 }
 
 impl Losses {
@@ -73,15 +84,22 @@ impl Losses {
     }
 
     /// Looks where the grains have gone. Walls may have moved: `features` are where they are now.
-    pub(super) fn look(&mut self, world: &World, features: &[Feature], walls_move: bool) {
+    pub(super) fn look(
+        &mut self,
+        world: &World,
+        features: &[Feature],
+        walls_move: bool,
+    ) -> NewLosses {
+        let mut new = NewLosses::default();
         if features.is_empty() && self.world.corners.is_none() {
-            return;
+            return new;
         }
-        let look_at_all = walls_move || !std::mem::replace(&mut self.begun, true);
+        let were_placed = !std::mem::replace(&mut self.begun, true);
+        let look_at_all = walls_move || were_placed;
         let are_carried = !self.frames.is_empty();
-        let deep = -LOST_DEPTH * world.mean_diameter;
         for (index, &to) in world.grains.positions.iter().enumerate() {
-            let way = WAY_IN_RADII * world.grains.radii[index];
+            let radius = world.grains.radii[index];
+            let (way, deep) = (WAY_IN_RADII * radius, -2.0 * LOST_DEPTH * radius);
             let here = self.from[index];
             let from = world.periodic.map_or(here, |periodic| periodic.near(here, to));
             let is_long = from.distance_squared(to) > way * way;
@@ -102,7 +120,7 @@ impl Losses {
                 fates.max_by_key(|(fate, _)| *fate).unwrap_or((Fate::There, from));
             match fate {
                 Fate::Inside => self.from[index] = carried_from,
-                Fate::There if !self.world.is_outside(to) => {
+                Fate::There if !self.world.is_outside(to, -deep) => {
                     if is_long || are_carried {
                         self.from[index] = to;
                     }
@@ -110,16 +128,27 @@ impl Losses {
                 _ => {
                     self.lost[index] = true;
                     self.count += 1;
+                    let is_in = |feature| self::fate(feature, here, here, deep) == Fate::Lost;
+                    match fate {
+                        _ if were_placed && features.iter().any(is_in) => new.placed = true,
+                        Fate::Lost => new.through_wall = true,
+                        Fate::There | Fate::Inside => new.left = true,
+                    }
                 }
             }
         }
         for (before, feature) in self.frames.iter_mut().zip(features) {
             *before = frame(feature);
         }
+        new
     }
 
-    /// Δy_G (paper eq. 11) of the grains that are still there: what is lost is in neither sum.
+    /// Δy_G (paper eq. 11) of the grains that are still there: lost grains are in neither sum. NaN if all are lost,
+    /// because no grain has no mean height.
     pub(super) fn slump(&self, world: &World) -> f64 {
+        if self.count as usize == self.lost.len() {
+            return f64::NAN;
+        }
         let there = || (0..self.lost.len()).filter(|&index| !self.lost[index]);
         let initial: f64 = there().map(|index| self.initial_heights[index]).sum();
         let heights: f64 = there().map(|index| world.grains.positions[index].y).sum();
@@ -135,6 +164,7 @@ impl Losses {
     /// Has the ways of all grains begin at these places, m.
     pub(super) fn place(&mut self, positions: &[DVec2]) {
         self.from = positions.to_vec();
+        self.begun = false;
     }
 
     pub(super) fn remove(&mut self, grain: usize) {
@@ -191,15 +221,15 @@ impl Edges {
         let lowest = all().map(|place| place.dot(down)).fold(f64::NEG_INFINITY, f64::max);
         Self {
             corners: Some([min - ROOM_IN_SIDES * side, max + ROOM_IN_SIDES * side]),
-            bottom: (down != DVec2::ZERO)
-                .then_some((down, lowest + LOST_DEPTH * world.mean_diameter)),
+            bottom: (down != DVec2::ZERO).then_some((down, lowest)),
         }
     }
 
-    fn is_outside(&self, place: DVec2) -> bool {
+    /// True of a place that is beyond the corners, or deeper below the bottom than that, m.
+    fn is_outside(&self, place: DVec2, depth: f64) -> bool {
         let Self { corners, bottom } = self;
         corners.is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
-            || bottom.is_some_and(|(down, lowest)| place.dot(down) > lowest)
+            || bottom.is_some_and(|(down, lowest)| place.dot(down) > lowest + depth)
     }
 }
 

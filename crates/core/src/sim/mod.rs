@@ -1,5 +1,6 @@
 //! The step, what it measures, and what it shows.
 
+mod advice;
 mod alarm;
 mod body_forces;
 mod edits;
@@ -20,6 +21,7 @@ mod steppers;
 mod stepping;
 mod walls;
 
+pub use advice::Advice;
 pub use alarm::{Alarm, AlarmKind};
 pub use edits::{Edit, NEW_GRAIN_DIAMETERS, place_of};
 pub use force_sums::{ForceSums, PairSum};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Numbering, Other};
-use crate::number::Parts;
+use crate::number::{self, Parts};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
@@ -79,7 +79,8 @@ pub struct Observables {
     /// Work of the gravity field, of body forces, and of a spring that pulls a grain, in this step, J.
     pub gravity_work: f64,
     /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), both sums over the grains that are not
-    /// lost; 0 where Σ y_i(0) is 0.
+    /// lost; 0 where Σ y_i(0) is 0, and NaN where all grains are lost.
+    #[serde(with = "number")]
     pub slump: f64,
     /// Work that bonds did in this step, a part of `normal_work`, J: negative while they are
     /// stretched. None but under the law `range`, as all that is told of bonds.
@@ -193,8 +194,7 @@ fn of_state<M: Model>(
         time_step_secs,
         sweeps,
         factorisations,
-        // What a method says of its own stopping test counts no more than what came of it.
-        converged: converged && residual.is_finite(),
+        converged,
         stalled,
         residual,
         model_residual,

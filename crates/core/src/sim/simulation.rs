@@ -68,7 +68,7 @@ impl Simulation {
         let surroundings = Arc::new(Surroundings::of(&world, settings.parameters.time_step_secs));
         let mut simulation = Self {
             initial_heights: world.grains.positions.iter().map(|position| position.y).sum(),
-            watch: Watch::new(&world, candidates.features(), physics),
+            watch: Watch::default(),
             state: State {
                 world,
                 physics,
@@ -91,6 +91,7 @@ impl Simulation {
             edits: 0,
         };
         simulation.observe_start();
+        simulation.watch = Watch::new(&simulation.state);
         Ok(simulation)
     }
 
@@ -100,6 +101,7 @@ impl Simulation {
     /// [`Error::NonFinite`] where a position, velocity or the kinetic energy is no longer a number; the
     /// state is then left as it is, for looking at.
     pub fn step(&mut self) -> Result<&Observables> {
+        self.watch.look_ahead(&self.observables, &self.settings);
         self.become_of(Some(self.settings.stepper));
         let mut memory = std::mem::take(&mut self.memory);
         let pieces = remedies::pieces(&self.state, &self.settings);
@@ -136,6 +138,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_by(&mut self, own: &mut (impl Advance + Send)) -> Result<&Observables> {
+        self.watch.look_ahead(&self.observables, &self.settings);
         self.become_of(None);
         self.take_step(1, own);
         self.look()
@@ -164,7 +167,7 @@ impl Simulation {
 
     /// Takes a step in so many pieces of equal length.
     fn take_step_of<M: Model>(&mut self, pieces: u32, advance: &mut impl Advance) {
-        let Self { state, settings, slots, observables, initial_heights, .. } = self;
+        let Self { state, settings, slots, observables, initial_heights, last_stepper, .. } = self;
         let stage = &mut Stage::<M>::new(state, M::slot(slots));
         let mut result = if pieces == 1 {
             advance.advance(stage, settings)
@@ -178,6 +181,9 @@ impl Simulation {
             result.measures.measure_as_a_model();
         }
         let time_step_secs = settings.parameters.time_step_secs;
+        // A scheme solves nothing that its residual could say is not solved.
+        let is_solved = last_stepper.is_none_or(Stepper::uses_method);
+        result.report.converged &= !is_solved || result.measures.residual.is_finite();
         *observables =
             observables::after_step(stage, result, time_step_secs, observables, *initial_heights);
     }
@@ -185,19 +191,28 @@ impl Simulation {
     fn look(&mut self) -> Result<&Observables> {
         // Speeds whose squares no number holds are as good as none: nothing is told of what they do.
         let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
-        let State { world, candidates, .. } = &self.state;
-        let features = candidates.features();
-        self.watch.look(world, features, world.has_motion(), &mut self.observables, finite);
+        let Self { state, settings, watch, observables, .. } = self;
+        watch.look(state, settings, observables, finite);
         if finite {
             return Ok(&self.observables);
         }
+        let advice = watch.advice_on_overflow(settings);
         let Observables { step, time_secs, .. } = self.observables;
         let Parameters { bond, time_step_secs, restitution, friction, .. } =
             self.settings.parameters;
-        Err(Error::NonFinite { step, time_secs, bond, time_step_secs, restitution, friction })
+        Err(Error::NonFinite {
+            step,
+            time_secs,
+            bond,
+            time_step_secs,
+            restitution,
+            friction,
+            advice,
+        })
     }
 
-    fn observe_start(&mut self) {
+    /// Finds the contacts of the present places, and measures them as those of a start.
+    pub(super) fn observe_start(&mut self) {
         let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
         with_model!(state.leanest_model(&settings.parameters), M => {
             memory.prepare(&mut Stage::<M>::new(state, M::slot(slots)), settings);
@@ -309,10 +324,16 @@ impl Simulation {
         &self.watch.alarms
     }
 
+    /// The alarm that the next step raises on grains as they were placed, if there is one.
+    pub fn alarm_on_placed(&self) -> Option<Alarm> {
+        self.watch.of_placed(&self.observables, &self.settings)
+    }
+
     /// Forgets what went wrong, for a run that goes on in another way: each kind of alarm is raised once. Grains that are
     /// lost stay so.
     pub fn forget_alarms(&mut self) {
-        self.watch.alarms.retain(|alarm| alarm.kind == AlarmKind::GrainLost);
+        let stays = [AlarmKind::GrainLost, AlarmKind::GrainLeft];
+        self.watch.alarms.retain(|alarm| stays.contains(&alarm.kind));
     }
 
     /// The step whose end is nearest to a simulated time (s), as long as Δt stays as it is.

@@ -105,7 +105,7 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "slump",
         "1",
-        "how far the mean height of the grains has sunk, in its first value",
+        "how far the mean height of the grains has sunk, in its first value; NaN if all grains are lost",
         Number(|row| row.slump),
     ),
     column("bond_work", "J", "work that bonds did in the step", SomeNumber(|row| row.bond_work)),

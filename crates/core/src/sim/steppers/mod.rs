@@ -12,6 +12,7 @@ mod substeps;
 mod tgs_soft;
 
 pub use spring_dashpot::SpringDashpot;
+pub(super) use spring_dashpot::stable_substeps;
 
 use serde::{Deserialize, Serialize};
 

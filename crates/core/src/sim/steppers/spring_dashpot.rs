@@ -185,7 +185,7 @@ pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters)
 }
 
 /// Number of substeps that keeps h at the safe fraction of the critical step, however many these are.
-pub(super) fn stable_substeps(
+pub(in crate::sim) fn stable_substeps(
     world: &World,
     physics: Physics,
     parameters: &Parameters,

@@ -1,0 +1,112 @@
+//! The one change that is most likely to help against an alarm, under the settings that raised it.
+
+use crate::setting::words;
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
+use crate::sim::steppers::{SpringDashpot, Stepper, stable_substeps};
+use crate::solver::{FrictionModel, Method, SolverSettings};
+use crate::world::{Periodic, Physics, World};
+
+words! {
+    /// The change that is most likely to help against an alarm.
+    pub enum Advice {
+        TimeStep = "time-step", "try a smaller time step";
+        Stiffness = "stiffness", "try a larger stiffness";
+        StableSubsteps = "stable-substeps", "try 0 substeps, which takes as many as are stable";
+        Sweeps = "sweeps", "try more sweeps";
+        Tolerance = "tolerance", "try a larger tolerance";
+        Newton = "newton", "try solver newton";
+        BoundedFriction = "bounded-friction",
+            "try solver auto with friction model tresca: a step under Coulomb's law may have no solution";
+        RestitutionThreshold = "restitution-threshold",
+            "try a restitution threshold of 2: wedged contacts ask for bounces that contradict each other";
+        PushOut = "push-out", "the remedy push-out moves grains apart without giving them speed";
+        PlaceApart = "place-apart",
+            "place grains apart, as a run by the stepper moreau with the remedy push-out does";
+        OutOfWalls = "out-of-walls",
+            "it no longer counts in slump; place it outside of walls and fixed polygons";
+        Enclose = "enclose",
+            "it no longer counts in slump; if it was to stay, put a wall or a floor in its way";
+        BondAcceleration = "bond-acceleration",
+            "the cohesion force is Bond·m·g, and g is 0; try a bond-acceleration above 0 m/s²";
+        Cohesion = "cohesion", "set cohesion = true under [physics] in the scene file";
+    }
+}
+
+/// On grains that were placed in overlap: only `moreau` takes the remedy that moves them apart.
+pub(super) fn on_placed(settings: &Settings) -> Advice {
+    match settings.stepper {
+        Stepper::Moreau => Advice::PushOut,
+        _ => Advice::PlaceApart,
+    }
+}
+
+/// On a cohesion force that is 0 although Bond is not.
+pub(super) fn on_no_cohesion(
+    settings: &Settings,
+    world: &World,
+    physics: Physics,
+) -> Option<Advice> {
+    let parameters = &settings.parameters;
+    match parameters.cohesion_acceleration(world.gravity.magnitude()) {
+        _ if parameters.bond == 0.0 => None,
+        _ if !physics.cohesion => Some(Advice::Cohesion),
+        0.0 => Some(Advice::BondAcceleration),
+        _ => None,
+    }
+}
+
+/// On a state that is no longer finite.
+pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
+    match has_too_few_substeps(state, settings) {
+        true => Advice::StableSubsteps,
+        false => Advice::TimeStep,
+    }
+}
+
+/// On bodies that came too deep into each other, with the stiffness (N/m) of the springs that gave way. Springs give
+/// way at every time step; under all other laws a contact is seen too late.
+pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f64>) {
+    if settings.stepper != Stepper::Dem {
+        return (Advice::TimeStep, None);
+    }
+    if has_too_few_substeps(state, settings) {
+        return (Advice::StableSubsteps, None);
+    }
+    let (world, axes) = (&state.world, state.physics.axes);
+    let SpringDashpot { stiffness, .. } = SpringDashpot::of(world, axes, &settings.parameters);
+    (Advice::Stiffness, Some(stiffness))
+}
+
+/// True for springs that are stepped in fewer substeps than are stable.
+fn has_too_few_substeps(state: &State, settings: &Settings) -> bool {
+    let (parameters, asked) = (&settings.parameters, settings.parameters.substeps);
+    let stable = stable_substeps(&state.world, state.physics, parameters);
+    settings.stepper == Stepper::Dem && asked > 0 && f64::from(asked) < stable
+}
+
+/// On steps that were not solved, the last of which had stalled or not.
+pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> Advice {
+    let Settings { stepper, parameters, solver, .. } = settings;
+    if !stalled && solver.max_sweeps < SolverSettings::DEFAULT.max_sweeps {
+        return Advice::Sweeps;
+    }
+    let may_bounce = parameters.restitution > 0.0 && parameters.restitution_threshold == 0.0;
+    if stalled && may_bounce && stepper.reads("restitution-threshold") {
+        return Advice::RestitutionThreshold;
+    }
+    // Under other models Newton's method would be another law.
+    if solver.model() == FrictionModel::Coulomb {
+        let newton = Method::Newton.info();
+        let is_driven = state.world.motions.iter().any(|motion| motion.drive.is_some());
+        let is_sheared = state.world.periodic.is_some_and(Periodic::is_sheared);
+        let is_taken = (newton.takes_drives || !is_driven) && (newton.takes_shear || !is_sheared);
+        if is_taken && solver.method != Method::Newton {
+            return Advice::Newton;
+        }
+        if stalled && state.physics.friction && parameters.friction > 0.0 {
+            return Advice::BoundedFriction;
+        }
+    }
+    if stalled { Advice::Tolerance } else { Advice::Sweeps }
+}

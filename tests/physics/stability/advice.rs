@@ -1,0 +1,288 @@
+//! Alarms are true under every stepper, and their advice helps: a scene that raises one no longer does once it is
+//! changed as the alarm says.
+
+use slump::scene::stability::{column, mass_ratio, overlapped};
+
+use crate::common::*;
+
+/// The alarms of a run of so many steps, or to the end of a finite state.
+fn raised(scene: &Scene, steps: usize) -> Vec<Alarm> {
+    let mut run = start(scene);
+    for _ in 0..steps {
+        if run.step().is_err() {
+            break;
+        }
+    }
+    run.alarms().to_vec()
+}
+
+fn kinds(scene: &Scene, steps: usize) -> Vec<AlarmKind> {
+    raised(scene, steps).iter().map(|alarm| alarm.kind).collect()
+}
+
+/// The alarm of a kind, and its sentence.
+#[track_caller]
+fn alarm_of(kind: AlarmKind, scene: &Scene, steps: usize) -> (Alarm, String) {
+    let alarms = raised(scene, steps);
+    let alarm = alarms.iter().find(|alarm| alarm.kind == kind);
+    let alarm = *alarm.unwrap_or_else(|| panic!("{kind} is not in {alarms:?}"));
+    (alarm, alarm.message(&scene.settings()))
+}
+
+fn under(stepper: Stepper, mut scene: Scene) -> Scene {
+    scene.stepper = stepper;
+    scene.solver = SolverSettings::default();
+    scene
+}
+
+fn at(x: f64, y: f64) -> DVec2 {
+    DVec2::new(x, y)
+}
+
+const RADIUS: f64 = 0.05;
+
+#[test]
+fn overlap_that_grains_were_placed_with_is_no_matter_of_the_time_step() {
+    for &stepper in Stepper::ALL {
+        let scene = under(stepper, overlapped(0.3));
+        let (alarm, words) = alarm_of(AlarmKind::PlacedInOverlap, &scene, 100);
+        assert_eq!((alarm.step, alarm.time_secs), (0, 0.0), "{stepper}");
+        assert!(!words.contains("time step"), "{stepper}: {words}");
+        assert!(!kinds(&scene, 100).contains(&AlarmKind::Overlap), "{stepper}");
+
+        let mut moved = under(Stepper::Moreau, scene.clone());
+        moved.remedies.push_out = true;
+        assert_eq!(kinds(&moved, 100), [], "{stepper}: pushed out");
+        if alarm.advice == Advice::PushOut {
+            assert_eq!(stepper, Stepper::Moreau);
+            continue;
+        }
+        assert_eq!(alarm.advice, Advice::PlaceApart, "{stepper}");
+        let run = after(&moved, 100);
+        let mut apart = scene;
+        for (grain, &place) in apart.grains.iter_mut().zip(&run.world().grains.positions) {
+            grain.position = place;
+        }
+        assert_eq!(kinds(&apart, 100), [], "{stepper}: placed apart");
+    }
+    // So it is where grains are placed on the way.
+    let mut run = start(&under(Stepper::Moreau, overlapped(0.0)));
+    take_steps(&mut run, 3);
+    let diameter = run.world().mean_diameter;
+    let mut places = run.world().grains.positions.clone();
+    places[1].y -= 0.3 * diameter;
+    run.set_positions(&places).expect("places");
+    take_steps(&mut run, 3);
+    let placed: Vec<_> = run.alarms().iter().map(|alarm| (alarm.kind, alarm.step)).collect();
+    assert_eq!(placed, [(AlarmKind::PlacedInOverlap, 3)]);
+}
+
+#[test]
+fn a_grain_that_was_placed_in_a_wall_has_not_gone_through_it() {
+    let mut scene = column(1);
+    let diameter = scene.mean_diameter;
+    scene.grains[0].position.y = -1.5 * diameter;
+    for &stepper in Stepper::ALL {
+        let mut scene = under(stepper, scene.clone());
+        assert_eq!(kinds(&scene, 3), [AlarmKind::PlacedInOverlap], "{stepper}");
+        scene.grains[0].position.y = 0.5 * diameter;
+        assert_eq!(kinds(&scene, 3), [], "{stepper}");
+    }
+}
+
+/// A disc that falls on a floor.
+fn falling() -> Scene {
+    let grains = vec![moving(at(0.0, 0.1), RADIUS, at(0.0, -3.0))];
+    let parameters = parameters(0.0, 1e-4, 0.5, 0.5);
+    Scene { boundaries: vec![plane(at(0.0, 0.0), at(0.0, 1.0))], ..under_g(parameters, grains) }
+}
+
+#[test]
+fn springs_that_give_way_ask_for_stiffness_and_not_for_a_smaller_time_step() {
+    let scene = under(Stepper::Dem, falling());
+    let (alarm, words) = alarm_of(AlarmKind::Overlap, &scene, 1000);
+    assert_eq!(alarm.advice, Advice::Stiffness);
+    let stiffness = alarm.stiffness.expect("the springs in force");
+    assert!(words.contains("stiffness above") && !words.contains("time step"), "{words}");
+    let mut slower = scene.clone();
+    slower.parameters.time_step_secs = 1e-5;
+    assert!(kinds(&slower, 10_000).contains(&AlarmKind::Overlap), "that would be of no use");
+    let mut stiffer = scene.clone();
+    stiffer.parameters.stiffness = 1e4 * stiffness;
+    assert_eq!(kinds(&stiffer, 1000), []);
+
+    // Springs through which a grain goes.
+    let mut wall = under(Stepper::Dem, through_a_wall(1e-4, 100.0));
+    wall.parameters.restitution = 1.0;
+    let (alarm, _) = alarm_of(AlarmKind::GrainLost, &wall, 60);
+    assert_eq!(alarm.advice, Advice::Stiffness);
+    wall.parameters.stiffness = 1e6 * alarm.stiffness.expect("the springs in force");
+    assert_eq!(kinds(&wall, 60), []);
+
+    // Springs in fewer substeps than are stable.
+    let mut coarse = stiffer;
+    coarse.parameters.substeps = 1;
+    coarse.parameters.time_step_secs = 1e-3;
+    let (alarm, _) = alarm_of(AlarmKind::Overlap, &coarse, 1000);
+    assert_eq!(alarm.advice, Advice::StableSubsteps);
+    coarse.parameters.substeps = 0;
+    assert_eq!(kinds(&coarse, 100), []);
+}
+
+/// A disc that flies at a thin wall with that speed, m/s.
+fn through_a_wall(time_step_secs: f64, speed: f64) -> Scene {
+    let grains = vec![moving(at(-0.3, 0.0), RADIUS, at(speed, 0.0))];
+    let wall = Boundary::Segment { from: at(0.0, -1.0), to: at(0.0, 1.0) };
+    let parameters = parameters(0.0, time_step_secs, 0.0, 0.5);
+    Scene { boundaries: vec![wall], ..without_g(parameters, grains) }
+}
+
+#[test]
+fn a_wall_that_a_step_jumps_asks_for_a_smaller_time_step() {
+    for &stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Dem) {
+        // A hundred diameters a step.
+        let scene = under(stepper, through_a_wall(1e-2, 1000.0));
+        let (alarm, words) = alarm_of(AlarmKind::GrainLost, &scene, 3);
+        assert!(words.contains("gone through a wall") && words.contains("below 0.01 s"), "{words}");
+        assert_eq!(alarm.advice, Advice::TimeStep);
+        let slower = under(stepper, through_a_wall(1e-6, 1000.0));
+        assert_eq!(kinds(&slower, 1000), [], "{stepper}");
+        // A quarter of a diameter deep in it.
+        let scene = under(stepper, through_a_wall(1e-2, 27.0));
+        if let Some(alarm) = raised(&scene, 3).first() {
+            assert_eq!(alarm.advice, Advice::TimeStep, "{stepper}: {alarm:?}");
+        }
+        assert_eq!(kinds(&under(stepper, through_a_wall(1e-5, 27.0)), 2000), [], "{stepper}");
+    }
+}
+
+#[test]
+fn grains_that_leave_an_open_hopper_have_not_gone_through_a_wall() {
+    let side = |x: f64| Boundary::Segment { from: at(x, 0.6), to: at(0.3 * x, 0.0) };
+    let grains = [-0.1, 0.0, 0.1].map(|x| Grain::at_rest(at(x, 0.5), 0.04)).to_vec();
+    let parameters = parameters(0.0, 1e-3, 0.1, 0.2);
+    let hopper = Scene { boundaries: vec![side(0.5), side(-0.5)], ..under_g(parameters, grains) };
+    for &stepper in Stepper::ALL {
+        let scene = under(stepper, hopper.clone());
+        let mut run = start(&scene);
+        while run.observables().lost_grains < 3 && run.time_secs() < 3.0 {
+            let lost = run.observables().lost_grains;
+            assert_eq!(run.observables().slump.is_nan(), lost == 3);
+            take_steps(&mut run, 1);
+        }
+        assert_eq!(run.observables().lost_grains, 3, "{stepper}: all are out");
+        assert!(run.observables().slump.is_nan(), "{stepper}: of no grain there is no mean height");
+        let alarm = *run.alarms().first().expect("an alarm");
+        assert_eq!((alarm.kind, alarm.advice), (AlarmKind::GrainLeft, Advice::Enclose));
+        let gone_through = run.alarms().iter().any(|alarm| alarm.kind == AlarmKind::GrainLost);
+        assert!(!gone_through, "{stepper}");
+        let mut enclosed = scene;
+        enclosed.boundaries.push(plane(at(0.0, -0.3), at(0.0, 1.0)));
+        let has_left = kinds(&enclosed, 1500).contains(&AlarmKind::GrainLeft);
+        assert!(!has_left, "{stepper}: with a floor");
+    }
+}
+
+#[test]
+fn a_small_grain_is_as_deep_as_its_own_size_says() {
+    // The small one falls 3.3 of its radii into the floor, which is 0.02 of the large one's diameter.
+    let parameters = parameters(0.0, 0.02, 0.0, 0.5);
+    let small = Grain::at_rest(at(2.0, 0.5), 0.01);
+    let grains = vec![Grain::at_rest(at(0.0, 0.5), 0.5), small];
+    let floor = vec![plane(at(0.0, 0.0), at(0.0, 1.0))];
+    let mut scene = Scene { boundaries: floor, ..under_g(parameters, grains) };
+    let run = after(&scene, 50);
+    assert!(run.place(1).y < -0.02, "the situation: {}", run.place(1));
+    assert!(run.observables().max_overlap < 0.05, "of the large one's diameter");
+    let kinds_of_run: Vec<_> = run.alarms().iter().map(|alarm| alarm.kind).collect();
+    assert_eq!(kinds_of_run, [AlarmKind::GrainLost, AlarmKind::Overlap]);
+    assert_eq!(run.observables().lost_grains, 1);
+    scene.parameters.time_step_secs = 1e-4;
+    assert_eq!(kinds(&scene, 10_000), []);
+    // Half of its diameter is an overlap, too.
+    scene.parameters.time_step_secs = 1e-2;
+    scene.grains[1].velocity = at(0.0, -1.0);
+    scene.grains[1].position.y = 0.0149;
+    assert_eq!(kinds(&scene, 1), []);
+    assert_eq!(kinds(&scene, 3), [AlarmKind::Overlap]);
+}
+
+#[test]
+fn unsolved_steps_are_told_what_solves_them() {
+    const STEPS: usize = 100;
+    let limit = |scene: &Scene| {
+        let (alarm, words) = alarm_of(AlarmKind::SweepLimit, scene, STEPS);
+        println!("{words}");
+        alarm.advice
+    };
+    let solved = |scene: &Scene, what: &str| {
+        assert!(!kinds(scene, STEPS).contains(&AlarmKind::SweepLimit), "{what}");
+    };
+    let mut few = mass_ratio(1e3);
+    few.solver = SolverSettings { max_sweeps: 2, tolerance: 1e-9, ..SolverSettings::default() };
+    assert_eq!(limit(&few), Advice::Sweeps);
+    few.solver.max_sweeps = 5000;
+    solved(&few, "more sweeps");
+
+    let mut heavy = mass_ratio(1e3);
+    let from_zero = SolverSettings { warm_start: false, ..solved_by(Method::Nsgs, 1e-9) };
+    heavy.solver = SolverSettings { max_sweeps: 5000, ..from_zero };
+    assert_eq!(limit(&heavy), Advice::Newton);
+    heavy.solver.method = Method::Newton;
+    solved(&heavy, "newton");
+
+    let mut strict = mass_ratio(1e3);
+    strict.solver = SolverSettings { tolerance: 1e-18, ..SolverSettings::default() };
+    assert_eq!(limit(&strict), Advice::Tolerance);
+    strict.solver.tolerance = 1e-6;
+    solved(&strict, "a larger tolerance");
+}
+
+#[test]
+fn a_disc_that_unsolved_steps_let_sink_asks_for_what_solves_them() {
+    let mut scene = mass_ratio(1e3);
+    scene.solver = SolverSettings { max_sweeps: 10, ..solved_by(Method::Nsgs, 1e-6) };
+    let (alarm, _) = alarm_of(AlarmKind::Overlap, &scene, 200);
+    assert_eq!(alarm.advice, Advice::Sweeps);
+    scene.solver.max_sweeps = 100_000;
+    assert_eq!(kinds(&scene, 200), []);
+}
+
+#[test]
+fn schemes_have_no_tolerance_that_they_could_miss() {
+    for stepper in [Stepper::Dem, Stepper::TgsSoft, Stepper::Avbd] {
+        // Discs that touch where nothing would move: any impulse is an error, and the residual is infinite.
+        let grains =
+            vec![Grain::at_rest(at(0.0, 0.0), RADIUS), Grain::at_rest(at(0.0998, 0.0), RADIUS)];
+        let mut scene = under(stepper, without_g(parameters(0.0, 1e-3, 0.5, 0.5), grains));
+        scene.solver.tolerance = 1e-300;
+        let mut run = start(&scene);
+        let mut largest = 0f64;
+        for _ in 0..20 {
+            let step = run.step().expect("a finite state");
+            assert!(step.converged, "{stepper}: {step:?}");
+            largest = largest.max(step.residual);
+        }
+        let is_met = stepper != Stepper::Dem || largest == f64::INFINITY;
+        assert!(is_met, "{stepper}: the situation, {largest}");
+    }
+}
+
+#[test]
+fn a_bond_number_that_makes_no_cohesion_is_told() {
+    let pair = || {
+        vec![Grain::at_rest(at(0.0, 0.0), RADIUS), moving(at(0.0999, 0.0), RADIUS, at(1e-3, 0.0))]
+    };
+    for &stepper in Stepper::ALL {
+        let mut scene = under(stepper, without_g(parameters(20.0, 1e-3, 0.0, 0.5), pair()));
+        let (alarm, words) = alarm_of(AlarmKind::NoCohesion, &scene, 1);
+        assert_eq!(alarm.advice, Advice::BondAcceleration);
+        assert!(words.contains("bond-acceleration above 0"), "{words}");
+        scene.parameters.bond_acceleration = G;
+        assert_eq!(kinds(&scene, 1), [], "{stepper}");
+        scene.physics.cohesion = false;
+        assert_eq!(alarm_of(AlarmKind::NoCohesion, &scene, 1).0.advice, Advice::Cohesion);
+        scene.parameters.bond = 0.0;
+        assert_eq!(kinds(&scene, 1), [], "{stepper}");
+    }
+}
