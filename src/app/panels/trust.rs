@@ -43,10 +43,11 @@ pub(crate) struct RunBudget {
 /// The word on the run that is shown.
 pub(super) fn word(state: &AppState) -> Trust {
     let Some(world) = state.world() else { return Trust::NotKnownYet };
-    const BAD: [AlarmKind; 3] = [
+    const BAD: [AlarmKind; 4] = [
         AlarmKind::NotFinite,
         AlarmKind::GrainLost,
         AlarmKind::GrainLeft,
+        AlarmKind::EnergyCreated,
     ];
     let is_bad = world.alarms.iter().any(|alarm| BAD.contains(&alarm.kind));
     let steps = world.snapshot.observables.step.max(1);

@@ -1,7 +1,7 @@
 //! Alarms are true under every stepper, and their advice helps: a scene that raises one no longer does once it is
 //! changed as the alarm says.
 
-use slump::scene::stability::{column, mass_ratio, overlapped};
+use slump::scene::stability::{column, mass_ratio, overlapped, squeeze};
 
 use crate::common::*;
 
@@ -285,4 +285,64 @@ fn a_bond_number_that_makes_no_cohesion_is_told() {
         scene.parameters.bond = 0.0;
         assert_eq!(kinds(&scene, 1), [], "{stepper}");
     }
+}
+
+/// Six discs in two rows that fall on a floor together.
+fn six_discs() -> Scene {
+    let place = |k: u32| at(0.505 * f64::from(k), 3.5 + 0.75f64.sqrt() * f64::from(k % 2));
+    let grains = (0..6).map(|k| Grain::at_rest(place(k), 0.5)).collect();
+    let parameters = parameters(0.0, 1e-3, 1.0, 0.5);
+    Scene { boundaries: vec![plane(at(0.0, 0.0), at(0.0, 1.0))], ..under_g(parameters, grains) }
+}
+
+#[test]
+fn energy_that_restitution_and_friction_create_is_told() {
+    const STEPS: usize = 900;
+    let most = |scene: &Scene| {
+        let mut run = start(scene);
+        let energy = |row: &Observables| row.kinetic_energy + row.potential_energy;
+        let before = energy(run.observables());
+        let mut most = 1f64;
+        for _ in 0..STEPS {
+            most = most.max(energy(run.step().expect("a finite state")) / before);
+        }
+        most
+    };
+    for (stepper, restitution) in
+        [(Stepper::Moreau, 1.0), (Stepper::Moreau, 0.9), (Stepper::TgsSoft, 1.0)]
+    {
+        let mut scene = under(stepper, six_discs());
+        scene.parameters.restitution = restitution;
+        let created = most(&scene);
+        assert!(created > 1.02, "{stepper}, ρ {restitution}: the situation, {created}");
+        let (alarm, words) = alarm_of(AlarmKind::EnergyCreated, &scene, STEPS);
+        println!("{stepper}, ρ {restitution}: {created} times the energy; {words}");
+        assert_eq!(alarm.advice, Advice::NoRestitution);
+        let mut mended = vec![Parameters { restitution: 0.0, ..scene.parameters }];
+        if stepper == Stepper::Moreau {
+            mended.push(Parameters { friction: 0.0, ..scene.parameters });
+        }
+        for parameters in mended {
+            let mended = Scene { parameters, ..scene.clone() };
+            let created = most(&mended);
+            assert!(created < 1.0 + 1e-2, "{stepper}: {created}");
+            assert!(!kinds(&mended, STEPS).contains(&AlarmKind::EnergyCreated), "{stepper}");
+        }
+    }
+}
+
+#[test]
+fn piles_that_fall_and_rest_create_no_energy() {
+    let pile = paper_pile().expect("the shipped state");
+    for &stepper in Stepper::ALL {
+        for bond in [0.0, 50.0] {
+            let mut scene = under(stepper, pile.clone());
+            scene.parameters.bond = bond;
+            let created = kinds(&scene, 300).contains(&AlarmKind::EnergyCreated);
+            assert!(!created, "{stepper}, Bond {bond}");
+        }
+    }
+    let mut squeezed = squeeze(1e-2);
+    squeezed.parameters.friction = 0.0;
+    assert!(!kinds(&squeezed, 100).contains(&AlarmKind::EnergyCreated), "without friction");
 }

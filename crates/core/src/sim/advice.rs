@@ -20,6 +20,8 @@ words! {
             "try solver auto with friction model tresca: a step under Coulomb's law may have no solution";
         RestitutionThreshold = "restitution-threshold",
             "try a restitution threshold of 2: wedged contacts ask for bounces that contradict each other";
+        NoRestitution = "no-restitution",
+            "try a restitution of 0: several contacts that bounce at once can create energy";
         PushOut = "push-out", "the remedy push-out moves grains apart without giving them speed";
         PlaceApart = "place-apart",
             "place grains apart, as a run by the stepper moreau with the remedy push-out does";
@@ -83,6 +85,14 @@ fn has_too_few_substeps(state: &State, settings: &Settings) -> bool {
     let (parameters, asked) = (&settings.parameters, settings.parameters.substeps);
     let stable = stable_substeps(&state.world, state.physics, parameters);
     settings.stepper == Stepper::Dem && asked > 0 && f64::from(asked) < stable
+}
+
+/// On contacts that created energy in a step that was solved. Under `moreau` and `range` that takes friction, too.
+pub(super) fn on_created_energy(settings: &Settings) -> Advice {
+    match settings.parameters.restitution > 0.0 {
+        true => Advice::NoRestitution,
+        false => Advice::TimeStep,
+    }
 }
 
 /// On steps that were not solved, the last of which had stalled or not.

@@ -20,6 +20,13 @@ const LARGEST_OVERLAP: f64 = 0.05;
 /// Growth of an overlap that grains were placed with, in the same unit, that counts as a new overlap. Smaller values
 /// count the errors that a solver's tolerance allows.
 const GROWTH_OF_OVERLAP: f64 = 0.01;
+/// Part of the largest kinetic energy that contacts may create. With smaller values, errors within a solver's tolerance
+/// raise the alarm.
+const ENERGY_OF_MOTION: f64 = 0.01;
+/// Height by which contacts may lift all grains, in mean diameters. With smaller values, a stepper that pushes overlap
+/// out raises the alarm.
+const ENERGY_OF_HEIGHT: f64 = 0.1;
+
 words! {
     /// A way to go wrong.
     pub enum AlarmKind {
@@ -30,6 +37,7 @@ words! {
         Overlap = "overlap", "a contact overlaps by more than 5 % of the diameter of its smaller disc";
         PlacedInOverlap = "placed-in-overlap",
             "a grain was placed on a grain or a wall, with an overlap of more than 5 % of a diameter";
+        EnergyCreated = "energy-created", "contacts have created energy";
         NoCohesion = "no-cohesion", "Bond is above 0, but no contact pulls";
         BreakUnseen = "break-unseen", "bonds break faster than the substeps of a step can follow";
     }
@@ -93,6 +101,19 @@ pub(super) struct Watch {
     are_placed: bool,
     /// Least overlap that there was since grains were placed, in diameters of the smaller disc of the deepest contact.
     placed_overlap: f64,
+    energy: ContactEnergy,
+}
+
+/// Energy that contacts gave and took.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ContactEnergy {
+    /// Work of all contacts since the start, without that of walls and bonds, J.
+    work: f64,
+    /// The least that `work` has been, J.
+    least_work: f64,
+    /// The largest kinetic energy that there was, J.
+    largest_kinetic_energy: f64,
 }
 
 impl Watch {
@@ -179,6 +200,35 @@ impl Watch {
             self.raise_on_depth(AlarmKind::Overlap, sinks, state, settings, observables);
         }
         self.placed_overlap = self.placed_overlap.min(overlap);
+    }
+
+    /// Counts the work of the contacts in a step under a law whose contacts store no energy.
+    pub(super) fn count_work(
+        &mut self,
+        state: &State,
+        settings: &Settings,
+        observables: &Observables,
+    ) {
+        let Observables { normal_work, tangential_work, wall_work, bond_work, .. } = *observables;
+        let energy = &mut self.energy;
+        energy.work += normal_work + tangential_work - wall_work - bond_work.unwrap_or(0.0);
+        energy.least_work = energy.least_work.min(energy.work);
+        energy.largest_kinetic_energy =
+            energy.largest_kinetic_energy.max(observables.kinetic_energy);
+        let created = energy.work - energy.least_work;
+        let of_motion = ENERGY_OF_MOTION * energy.largest_kinetic_energy;
+        if created <= of_motion || self.has(AlarmKind::EnergyCreated) {
+            return;
+        }
+        let world = &state.world;
+        let weight = world.gravity.magnitude() * world.grains.masses.iter().sum::<f64>();
+        if created > of_motion + ENERGY_OF_HEIGHT * weight * world.mean_diameter {
+            let advice = match observables.converged {
+                true => advice::on_created_energy(settings),
+                false => advice::on_unsolved(state, settings, observables.stalled),
+            };
+            self.raise_with(AlarmKind::EnergyCreated, observables, advice);
+        }
     }
 
     /// The advice on a state that is no longer finite, in words.

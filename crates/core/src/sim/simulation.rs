@@ -192,6 +192,11 @@ impl Simulation {
         // Speeds whose squares no number holds are as good as none: nothing is told of what they do.
         let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
         let Self { state, settings, watch, observables, .. } = self;
+        // Springs of `dem` give back the energy that they took, and works of `avbd` do not balance its energy.
+        let is_balanced = |stepper| !matches!(stepper, Stepper::Dem | Stepper::Avbd);
+        if finite && self.last_stepper.is_some_and(is_balanced) {
+            watch.count_work(state, settings, observables);
+        }
         watch.look(state, settings, observables, finite);
         if finite {
             return Ok(&self.observables);
