@@ -74,7 +74,7 @@ pub(crate) fn numbers<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArra
     if given.is_none() || is_masked || !"biufO".contains(&kind) {
         return Err(PyTypeError::new_err("not an array of real numbers"));
     }
-    Ok(array.call_method1("astype", ("float64",))?.extract()?)
+    array.call_method1("astype", ("float64",))?.extract()
 }
 
 /// The vectors of an array that a user gives, one row of two numbers per grain.

@@ -203,7 +203,9 @@ pub(super) fn check_substeps(
 ) -> Result<()> {
     let Parameters { stiffness, time_step_secs, substeps, .. } = *parameters;
     let most = f64::from(MAX_SUBSTEPS);
-    if substeps > 0 || !(stable_substeps(world, physics, parameters) > most) {
+    let stable = stable_substeps(world, physics, parameters);
+    // NaN without grains.
+    if substeps > 0 || stable.is_nan() || stable <= most {
         return Ok(());
     }
     let critical_with = |stiffness: f64| {
