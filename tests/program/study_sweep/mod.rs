@@ -187,7 +187,7 @@ grains = [0]
     assert_eq!((count("states"), count("series")), (2, 4));
     let course = std::fs::read_dir(out.join("series")).expect("a folder").next().expect("a file");
     let course = read(course.expect("a file").path());
-    assert!(course.starts_with("step,time_secs,") && course.contains(",x0,y0\n"), "{course}");
+    assert!(course.starts_with("step,time,time_step,") && course.contains(",x0,y0\n"), "{course}");
     assert_eq!(course.lines().count(), 1 + 6, "a row at 0, 0.01, … 0.05 s");
     // The states lie there now: the second pass reads what the first one settled.
     std::fs::remove_file(out.join("runs.jsonl")).expect("the journal");
