@@ -92,6 +92,13 @@ impl Run {
         self.sums = Some(sums);
     }
 
+    /// Has sums of pairs begin again if bodies have other numbers now.
+    pub(crate) fn edited(&mut self) {
+        if let Some(sums) = &mut self.sums {
+            sums.follow(&self.simulation);
+        }
+    }
+
     /// Records it from its present state on.
     pub(crate) fn record(
         &mut self,

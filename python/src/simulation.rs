@@ -278,8 +278,8 @@ impl Simulation {
         self.run(py).simulation.set_velocities(&velocities).map_err(exception)
     }
 
-    /// Puts a grain in at x, y (m) with that radius (m) and velocity (m/s). It is the last one, and has the density of the
-    /// others. There must be room for it.
+    /// Puts a grain in at x, y (m) with that radius (m) and velocity (m/s). It is the last one, has the density of the
+    /// others, and an `id` that no other body has had. There must be room for it.
     #[pyo3(signature = (x, y, radius, vx=0.0, vy=0.0))]
     fn add_grain(
         &self,
@@ -291,16 +291,22 @@ impl Simulation {
         vy: f64,
     ) -> PyResult<()> {
         let disc = Disc { position: [x, y].into(), radius };
-        self.run(py).simulation.add_grain(disc, [vx, vy].into()).map_err(exception)
+        let mut run = self.run(py);
+        run.simulation.add_grain(disc, [vx, vy].into()).map_err(exception)?;
+        run.edited();
+        Ok(())
     }
 
-    /// Takes grain i out. Those after it are numbered one lower.
+    /// Takes grain i out. The arrays of all grains lose its row; the `id` of every other grain in tables and recordings
+    /// stays.
     fn remove_grain(&self, py: Python<'_>, i: i64) -> PyResult<()> {
         let mut run = self.run(py);
         let count = run.simulation.world().grains.len();
         let grain = usize::try_from(i)
             .map_err(|_| refused("grain", i, format!("from 0 to {}, its number", count - 1)))?;
-        run.simulation.remove_grain(grain).map_err(exception)
+        run.simulation.remove_grain(grain).map_err(exception)?;
+        run.edited();
+        Ok(())
     }
 
     /// The force on each grain beside gravity, N, a row a grain: set as a whole, it acts from the next step on until it is set

@@ -182,6 +182,14 @@ def test_a_grain_comes_in_motion_and_goes(sim: slump.Simulation) -> None:
         with pytest.raises(slump.InputError, match=sentence):
             act()
     assert len(other.radii) == 138
+    # A row is gone, and every other grain keeps its number; a new one gets another than any body has had.
+    ids = other.grains["id"]
+    others = ids.max()
+    other.remove_grain(1)
+    other.add_grain(0.0, 1.0, other.mean_diameter / 2)
+    other.step(1)
+    np.testing.assert_array_equal(other.grains["id"][:137], np.delete(ids[:138], 1))
+    assert other.grains["id"][137] > others and set(other.contacts["id_i"]) <= set(other.grains["id"])
 
 
 def test_body_forces_are_held_and_close_energies() -> None:

@@ -151,6 +151,8 @@ def test_what_is_asked_of_a_recording_is_checked(tmp_path: Path) -> None:
         sim.record(tmp_path / "data")
     assert done.returncode == 2 and str(refused.value) == done.stderr.removeprefix("slump: ").strip()
     sim.record(tmp_path / "data", overwrite=True)
+    with pytest.raises(slump.InputError, match="data is '', but must be the name of a folder"):
+        sim.record("")
 
 
 def test_a_recording_that_cannot_be_written_is_told_of_and_the_run_goes_on(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::manifest::{Instant, PictureEntry};
 use crate::config::SavedState;
+use crate::data::RecordingMark;
 use crate::error::{Error, Result};
 use crate::output::{
     FolderLock, Locked, check_recognised, check_writable, final_name, folder_of, is_recognised,
@@ -90,16 +91,13 @@ impl RunFolder {
         Err(Error::value("frames", self.path.display(), allowed))
     }
 
-    /// Removes the pictures in it but for these, which the run goes on with, and what a kill has left half
-    /// named, the `animation` among it where that is in the folder.
+    /// Removes the pictures in it except those of the `marks` with which the run is resumed, and files that a kill has left
+    /// half named, the `animation` among it where that is in the folder.
     ///
     /// # Errors
-    /// Names a picture that is not there, or that cannot be removed.
-    pub(super) fn keep_pictures(
-        &self,
-        pictures: &[PictureEntry],
-        animation: Option<&Path>,
-    ) -> Result<()> {
+    /// Names a picture or a table that is not there as a whole, or a picture that cannot be removed.
+    pub(super) fn keep(&self, marks: &Marks, animation: Option<&Path>) -> Result<()> {
+        let pictures = &marks.pictures;
         let inside = animation.filter(|path| folder_of(path) == self.path);
         let inside = inside.and_then(|path| path.file_name()?.to_str());
         let is_kept = |name: &str| pictures.iter().any(|picture| picture.file == name);
@@ -107,6 +105,15 @@ impl RunFolder {
         if let Some(lost) = pictures.iter().find(|picture| !names.contains(&picture.file)) {
             let reason = "is missing, but must be where the checkpoint tells of it";
             return Err(Error::file(self.path.join(&lost.file), reason));
+        }
+        for (name, marked) in [(TABLE, marks.table), (WAITING, marks.waiting)] {
+            let path = self.path.join(name);
+            let found = path.metadata().map_or(0, |there| there.len());
+            if found < marked {
+                let reason =
+                    format!("has {found} bytes, but must have all {marked} that were written");
+                return Err(Error::file(path, reason));
+            }
         }
         let goes = |name: &String| final_name(name) != name || (is_frame(name) && !is_kept(name));
         for name in names.iter().filter(|name| goes(name)) {
@@ -154,7 +161,7 @@ fn files_of_a_run(folder: &Path, animation: Option<&str>) -> Result<Vec<String>>
 }
 
 fn is_of_every_run(name: &str) -> bool {
-    is_frame(name) || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&name)
+    is_frame(name) || ["manifest.json", TABLE, CHECKPOINT, WAITING].contains(&name)
 }
 
 /// Refuses places of one command, each with its option, that are one and the same, or that of a file which the run
@@ -205,6 +212,8 @@ fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
+/// Name of the table of observables.
+pub(super) const TABLE: &str = "observables.csv";
 /// Name of a checkpoint.
 pub(super) const CHECKPOINT: &str = "checkpoint.slump";
 /// Name of the file in which states wait for being drawn, where they are to outlive the process.
@@ -228,8 +237,8 @@ pub(super) struct Marks {
     pub restarted_from: Option<Instant>,
     /// Moments at which the same command went on; none in one that has just begun.
     pub went_on_at: Vec<Instant>,
-    /// Frames of the recording.
-    pub frames: u64,
+    /// What the recording has.
+    pub recording: RecordingMark,
     /// What pairs have transmitted since the last of them.
     pub sums: ForceSums,
 }

@@ -4,6 +4,7 @@ use std::io::{Error as IoError, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::folder::TABLE;
 use crate::error::{Error, Result};
 use crate::output::{GrowingFile, end_of_last};
 use crate::sim::Observables;
@@ -26,12 +27,12 @@ pub(super) struct ObservablesTable {
 impl ObservablesTable {
     /// Starts `observables.csv` in a folder.
     pub(super) fn start(folder: &Path) -> Result<Self> {
-        Self::start_as(folder.join("observables.csv"))
+        Self::start_as(folder.join(TABLE))
     }
 
     /// Goes on with the first `length` bytes of `observables.csv` in a folder.
     pub(super) fn go_on(folder: &Path, length: u64) -> Result<Self> {
-        Ok(Self::of(GrowingFile::go_on(folder.join("observables.csv"), length)?))
+        Ok(Self::of(GrowingFile::go_on(folder.join(TABLE), length)?))
     }
 
     /// Starts a table at a path.

@@ -125,12 +125,12 @@ impl<'a> RunWriter<'a> {
     /// How far everything has come, once all of that is where readers find it.
     fn marks(&mut self) -> Result<Marks> {
         // It knows itself what it has of which step.
-        self.recording.as_mut().map_or(Ok(()), Recording::flush)?;
+        let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
         Ok(Marks {
             table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
             waiting: self.waiting.as_ref().map_or(Ok(0), WaitingStates::mark)?,
             pictures: self.manifest.pictures.clone(),
-            frames: self.recording.as_ref().map_or(0, Recording::frames),
+            recording: recording.unwrap_or_default(),
             sums: self.recording.as_ref().map(|it| it.sums().clone()).unwrap_or_default(),
             ..self.marks.clone()
         })

@@ -7,6 +7,7 @@ use crate::common::*;
 
 pub fn disc(position: DVec2, radius: f64) -> GrainState {
     GrainState {
+        id: 0,
         position,
         unwrapped: position,
         angle: 0.0,
@@ -23,6 +24,7 @@ pub fn disc(position: DVec2, radius: f64) -> GrainState {
 pub fn discs(grains: Vec<GrainState>) -> Moment {
     let mean_diameter = grains.first().map_or(1.0, |grain| 2.0 * grain.radius);
     Moment {
+        first_fixed_id: grains.len() as u32,
         observables: Observables::default(),
         settings: Settings::default(),
         grains,

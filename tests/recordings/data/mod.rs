@@ -2,6 +2,7 @@
 
 mod balance;
 mod columns;
+mod ids;
 mod initial;
 mod options;
 mod refusals;
@@ -10,7 +11,7 @@ mod tables;
 #[cfg(unix)]
 mod torn;
 
-use slump::data::{FormatName, Recording};
+use slump::data::{FormatName, Recording, RecordingMark};
 use slump::scene::{Scene, built_in};
 use slump::sim::{Moment, Simulation};
 

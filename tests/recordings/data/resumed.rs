@@ -48,13 +48,14 @@ fn what_goes_on_is_what_was_never_stopped() {
         let mut recording = start(&path, &formats, &pile);
         record(&mut recording, &mut simulation, stopped_at, 2);
         let (saved, sums) = (simulation.clone(), recording.sums().clone());
+        let mark = recording.flush().expect("written");
         // The run goes on for a while, and is stopped after its checkpoint.
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
         drop(recording);
         let mut simulation = saved;
         let about = slump::config::scene_facts(&pile).expect("facts");
-        let recording = Recording::go_on(&path, &formats, &about, stopped_at, stopped_at / 2)
-            .expect("it goes on");
+        let recording = Recording::go_on(&path, &formats, &about, stopped_at, &mark);
+        let recording = recording.expect("it goes on");
         let mut recording = recording.with_sums(sums);
         assert_eq!(recording.frames(), stopped_at / 2);
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
@@ -70,7 +71,12 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     let folder = folder();
     let (expected, torn) = (folder.path().join("whole"), folder.path().join("torn"));
     recorded(&expected, &formats, &pile, 40, 2);
-    recorded(&torn, &formats, &pile, 30, 2);
+    let mut recording = start(&torn, &formats, &pile);
+    let mut simulation = pile.simulation().expect("a scene");
+    record(&mut recording, &mut simulation, 25, 2);
+    let mark = recording.flush().expect("written");
+    record(&mut recording, &mut simulation, 5, 2);
+    recording.finish().expect("a recording");
     // Half rows, and a frame that the index does not know.
     let cut = |file: &str, by: u64| {
         let file = std::fs::OpenOptions::new().write(true).open(torn.join(file)).expect("a file");
@@ -85,7 +91,7 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     simulation.step().expect("a finite state");
     sums.follow(&simulation);
     let about = slump::config::scene_facts(&pile).expect("facts");
-    let recording = Recording::go_on(&torn, &formats, &about, 25, 0).expect("it goes on");
+    let recording = Recording::go_on(&torn, &formats, &about, 25, &mark).expect("it goes on");
     let mut recording = recording.with_sums(sums);
     record(&mut recording, &mut simulation, 15, 2);
     recording.finish().expect("a recording");
@@ -104,10 +110,54 @@ fn a_recording_that_lacks_frames_of_its_run_is_refused_and_keeps_what_it_has() {
     write(&index, &text[..=end]);
     let before = bytes(&grains);
     let about = slump::config::scene_facts(&pile).expect("facts");
-    let there = Recording::go_on(folder.path(), &formats, &about, 30, 15);
+    let mark = RecordingMark { frames: 15, ..RecordingMark::default() };
+    let there = Recording::go_on(folder.path(), &formats, &about, 30, &mark);
     let said = there.map(|_| ()).expect_err("three frames are missing").to_string();
     assert!(said.contains("frames of the recording is 12, but must be all 15"), "{said}");
     assert_eq!(bytes(&grains), before);
+}
+
+/// A power cut can take rows that had been written, and people tidy up.
+#[test]
+fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format() {
+    let pile = scene("pile");
+    let about = slump::config::scene_facts(&pile).expect("facts");
+    for format in FormatName::ALL {
+        let folder = folder();
+        let mut recording = start(folder.path(), &[*format], &pile);
+        let mut simulation = pile.simulation().expect("a scene");
+        record(&mut recording, &mut simulation, 12, 3);
+        let mark = recording.flush().expect("written");
+        // The run goes on after the mark.
+        record(&mut recording, &mut simulation, 6, 3);
+        recording.finish().expect("a recording");
+        let before = files(folder.path());
+        let go_on = || Recording::go_on(folder.path(), &[*format], &about, 12, &mark).map(drop);
+        let later =
+            |name: &String| ["_000004", "_000005", "part-00001"].iter().any(|it| name.contains(it));
+        let is_data =
+            |name: &&String| name.contains('/') && !name.ends_with(".pvd") && !later(name);
+        let mut tried = 0;
+        for name in before.keys().filter(is_data) {
+            let (path, whole) = (folder.path().join(name), &before[name]);
+            for part in [0, 1, 2, 3] {
+                match part {
+                    0 => std::fs::remove_file(&path).expect("a file"),
+                    // Of six frames two may go.
+                    part => write(&path, &whole[..whole.len() * part / 6]),
+                }
+                let damaged = files(folder.path());
+                let said = go_on().expect_err("rows are lost").to_string();
+                assert!(said.contains(" must ") && !said.contains('\n'), "{name}: {said}");
+                assert_eq!(files(folder.path()), damaged, "{name}, {part} of 6: {said}");
+                tried += 1;
+            }
+            write(&path, whole);
+        }
+        assert!(tried >= 12, "{format:?}: {tried}");
+        go_on().expect("it is as it was");
+        assert_ne!(files(folder.path()), before, "rows after the mark are gone");
+    }
 }
 
 #[test]
@@ -126,8 +176,10 @@ fn frames_that_are_there_are_not_made_again() {
         recording.add_if_due(&simulation).expect("a frame");
     }
     assert_eq!(recording.frames(), 4);
+    let mark = recording.flush().expect("written");
     recording.finish().expect("a recording");
-    let recording = Recording::go_on(folder.path(), &formats, &about, 7, 0).expect("it goes on");
+    let recording =
+        Recording::go_on(folder.path(), &formats, &about, 7, &mark).expect("it goes on");
     let mut recording = recording.at(Times::Every(0.002), &simulation);
     // As a run that goes on asks before its first step.
     recording.add_if_due(&simulation).expect("a frame");
@@ -153,7 +205,8 @@ fn one_recording_at_a_time_in_a_folder() {
         let said = second.err().expect("a refusal").to_string();
         assert!(said.contains("is being written by another run"), "{said}");
     }
-    let second = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 0, 0);
+    let none = RecordingMark::default();
+    let second = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 0, &none);
     assert!(second.is_err_and(|error| error.to_string().contains("another run")));
     first.finish().expect("a recording");
     let second = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
@@ -194,14 +247,15 @@ fn a_recording_goes_on_in_its_own_formats_alone() {
     let folder = folder();
     recorded(folder.path(), &[FormatName::Csv], &scene("pile"), 8, 2);
     let about = RunFacts::default();
-    let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4, 0);
+    let none = RecordingMark::default();
+    let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4, &none);
     let said = other.err().expect("a refusal").to_string();
     assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");
     // What is no table of this version is not gone on with, nor touched.
     let table = folder.path().join("csv/contacts.csv");
     let text = read(&table).replace("normal_force", "force");
     write(&table, &text);
-    let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4, 0);
+    let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4, &none);
     let said = changed.err().expect("a refusal").to_string();
     assert!(said.contains("contacts.csv: line ") && said.contains("normal_force"), "{said}");
     assert_eq!(read(&table), text);

@@ -102,7 +102,10 @@ fn what_a_kill_leaves_of_a_file_that_was_whole_is_no_rows_and_goes_with_the_next
     let scene = scene("pile");
     let about = slump::config::scene_facts(&scene).expect("facts");
     let formats = [FormatName::Parquet];
-    drop(Recording::go_on(folder.path(), &formats, &about, 0, 0).expect("goes on"));
+    drop(
+        Recording::go_on(folder.path(), &formats, &about, 0, &RecordingMark::default())
+            .expect("goes on"),
+    );
     assert_eq!(hidden(folder.path()), Vec::<String>::new());
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
-use slump::data::{FormatName, Recording, RunFacts};
+use slump::data::{FormatName, Recording, RecordingMark, RunFacts};
 use slump::sim::{
     ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Settings, Surroundings,
 };
@@ -25,7 +25,8 @@ fn about() -> RunFacts {
 
 /// Three grains, the last of them lost, on a fixed disc and a floor.
 fn moment(step: u64) -> Moment {
-    let grain = |x: f64, y: f64, radius: f64| GrainState {
+    let grain = |id: u32, x: f64, y: f64, radius: f64| GrainState {
+        id,
         position: DVec2::new(x, y),
         unwrapped: DVec2::new(x, y),
         angle: -0.0,
@@ -37,7 +38,7 @@ fn moment(step: u64) -> Moment {
         tone: 0,
         lost: false,
     };
-    let lost = GrainState { lost: true, ..grain(-1e6, 0.0, 0.5) };
+    let lost = GrainState { lost: true, ..grain(2, -1e6, 0.0, 0.5) };
     let contact = ContactState {
         grain: 0,
         other: OtherBody::Grain(1),
@@ -67,9 +68,10 @@ fn moment(step: u64) -> Moment {
     Moment {
         observables: Observables { step, time_secs: step as f64 * 0.1, ..Observables::default() },
         settings: Settings::default(),
-        grains: vec![grain(0.0, 0.25, 0.5), grain(1.0, 0.25, THIRD), lost],
+        grains: vec![grain(0, 0.0, 0.25, 0.5), grain(1, 1.0, 0.25, THIRD), lost],
         contacts: vec![contact, on_disc, on_floor],
         surroundings: Arc::new(surroundings),
+        first_fixed_id: 3,
     }
 }
 
@@ -104,8 +106,14 @@ fn start(folder: &Path) -> Recording {
     Recording::start(folder, FORMATS, &about(), false).expect("a recording")
 }
 
+/// Resumes at a step, with the frames up to there that every format has.
 fn go_on(folder: &Path, step: u64) -> Recording {
-    Recording::go_on(folder, FORMATS, &about(), step, 0).expect("a recording to go on with")
+    let index = std::fs::read_to_string(folder.join("frames.csv")).unwrap_or_default();
+    let whole = index.rfind('\n').map_or("", |end| &index[..end]);
+    let steps = whole.lines().filter_map(|row| row.split(',').next()?.parse::<u64>().ok());
+    let frames = steps.filter(|&there| there <= step).count() as u64;
+    let mark = RecordingMark { frames, ..RecordingMark::default() };
+    Recording::go_on(folder, FORMATS, &about(), step, &mark).expect("a recording to go on with")
 }
 
 /// Writes frames of the numbers, each of the step ten times as high.

@@ -1,6 +1,8 @@
 //! `.vtp` files: what the XML says, and that every number is in them bit by bit.
 
-use super::{THIRD, after, moment, start, write_frames};
+use glam::DVec2;
+
+use super::{THIRD, after, go_on, moment, start, write_frames};
 use crate::program::*;
 
 const GRAINS: &str = r#"<?xml version="1.0"?>
@@ -234,21 +236,66 @@ fn what_is_written_for_other_programs_is_refused_as_an_initial_state() {
     assert_refused(folder.path(), "has grains for other programs alone");
 }
 
+/// Numbers of a frame of fields.
+fn of_fields(folder: &Path, number: usize, names: [&str; 2]) -> [f64; 2] {
+    let file = bytes(folder.join(format!("fields/fields_{number:06}.vti")));
+    let text = String::from_utf8_lossy(&file);
+    names.map(|name| {
+        let (_, rest) = text.split_once(&format!("Name=\"{name}\"")).expect(name);
+        let (_, number) = rest.split_once('>').expect("a number");
+        number.split('<').next().and_then(|number| number.parse().ok()).expect("a number")
+    })
+}
+
 #[test]
-fn fields_of_grains_that_are_far_apart_are_smoothed_more() {
-    let folder = folder();
-    let mut recording = start(folder.path());
+fn all_frames_have_one_smoothing_width_and_leave_out_what_flies_off() {
     let mut far = moment(10);
     far.grains[1].position.x = 1e6;
+    let names = ["smoothing_width", "left_out_grains"];
+    let [straight, resumed, far_at_first] = [(); 3].map(|()| folder());
+    let mut recording = start(straight.path());
     recording.add(moment(0)).expect("a frame");
-    recording.add(far).expect("a frame");
+    recording.add(far.clone()).expect("a frame");
     recording.finish().expect("files");
-    let widths = ["fields_000000.vti", "fields_000001.vti"].map(|name| {
-        let text =
-            String::from_utf8_lossy(&bytes(folder.path().join("fields").join(name))).into_owned();
-        let (_, rest) = text.split_once("Name=\"smoothing_width\"").expect("a width");
-        let (_, number) = rest.split_once('>').expect("a number");
-        number.split('<').next().and_then(|number| number.parse::<f64>().ok()).expect("a number")
-    });
-    assert!(widths[0] == 1.0 && widths[1] > 1.0 && widths[1] < 100.0, "{widths:?}");
+    assert_eq!(of_fields(straight.path(), 0, names), [1.0, 0.0]);
+    assert_eq!(of_fields(straight.path(), 1, names), [1.0, 1.0]);
+    let length =
+        |number| bytes(straight.path().join(format!("fields/fields_00000{number}.vti"))).len();
+    assert!(length(1) < 9 * length(0), "as far as the room reaches, and no farther: {}", length(1));
+    // A recording that is resumed goes by its first frame.
+    write_frames(&mut start(resumed.path()), 0..1);
+    let mut recording = go_on(resumed.path(), 0);
+    recording.add(far.clone()).expect("a frame");
+    recording.finish().expect("files");
+    let last = "fields/fields_000001.vti";
+    assert!(bytes(resumed.path().join(last)) == bytes(straight.path().join(last)));
+    // What is far apart from the beginning is all there, smoothed more.
+    let mut recording = start(far_at_first.path());
+    recording.add(far).expect("a frame");
+    recording.add(moment(20)).expect("a frame");
+    recording.finish().expect("files");
+    let [[first, none], second] =
+        [0, 1].map(|number| of_fields(far_at_first.path(), number, names));
+    assert!(first > 1.0 && first < 100.0 && none == 0.0, "{first}");
+    assert_eq!(second, [first, 0.0]);
+}
+
+#[test]
+fn grains_that_leave_the_fields_are_told_of_once() {
+    let folder = folder();
+    let mut scene = slump::scene::built_in("collision").expect("a scene");
+    let away = 1e4 * scene.mean_diameter / scene.parameters.time_step_secs;
+    for (grain, speed) in scene.grains.iter_mut().zip([0.0, away]) {
+        grain.velocity = DVec2::new(speed * (grain.position.x + 1e-9).signum(), 0.0);
+    }
+    let path = folder.path().join("scene.toml");
+    write(&path, slump::config::scene_to_toml(&scene).expect("TOML"));
+    let every = scene.parameters.time_step_secs.to_string();
+    let duration = (4.0 * scene.parameters.time_step_secs).to_string();
+    let mut command = slump("run --data-format fields --data-every");
+    command.args([&every, "--duration", &duration, "--data"]).arg(folder.path().join("data"));
+    let said = succeed(command.arg("--scene").arg(&path));
+    let told = said.lines().filter(|line| line.contains("which fields cover")).count();
+    assert_eq!(told, 1, "{said}");
+    assert!(said.contains("fields: 1 grain left the box from ("), "{said}");
 }

@@ -37,11 +37,23 @@ pub struct Moment {
     pub contacts: Vec<ContactState>,
     /// What no grain moves, where it is now.
     pub surroundings: Arc<Surroundings>,
+    /// The number of the first fixed disc, which follows those of the grains that the run began with.
+    pub first_fixed_id: u32,
+}
+
+impl Moment {
+    /// The number that a grain keeps for the whole run. `grain` is its place in the list.
+    pub fn id(&self, grain: u32) -> u32 {
+        // What sums have of a grain that was taken out since is of its place alone.
+        self.grains.get(grain as usize).map_or(grain, |state| state.id)
+    }
 }
 
 /// One grain at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrainState {
+    /// The number that it keeps for the whole run.
+    pub id: u32,
     /// Centre, m.
     pub position: DVec2,
     /// Where it was at the start, and all its ways since, m: borders that wrap have no part in it.
@@ -176,6 +188,7 @@ impl Simulation {
         });
         let grains = &world.grains;
         let grain_state = |index: usize| GrainState {
+            id: grains.ids[index],
             position: grains.positions[index],
             unwrapped: grains.positions[index] + grains.brought_back[index],
             angle: grains.angles[index],
@@ -193,6 +206,7 @@ impl Simulation {
             contacts: states.collect(),
             grains: (0..world.grains.len()).map(grain_state).collect(),
             surroundings: self.surroundings(),
+            first_fixed_id: grains.count_at_start,
         }
     }
 }

@@ -81,18 +81,27 @@ pub struct Grains {
     /// By how much borders that wrap have brought each back since the start, m: with it a centre is where its ways have
     /// led it.
     pub brought_back: Vec<DVec2>,
+    /// The number that each keeps for the whole run: its place in the scene. Grains that are put in later have numbers
+    /// behind those of all other bodies.
+    pub ids: Vec<u32>,
+    /// Grains that the run began with.
+    pub count_at_start: u32,
+    /// Grains that were put in since.
+    pub added: u32,
 }
 
 impl Grains {
     /// Lays out `grains` for the step. `areal_density` in kg/m².
     pub fn new(grains: &[Grain], areal_density: f64) -> Self {
         let mut lists = Self::default();
-        grains.iter().for_each(|grain| lists.push(grain, areal_density));
+        grains.iter().zip(0..).for_each(|(grain, id)| lists.push(grain, areal_density, id));
+        lists.count_at_start = lists.len() as u32;
         lists
     }
 
-    /// One more, as the last. `areal_density` in kg/m².
-    pub(crate) fn push(&mut self, grain: &Grain, areal_density: f64) {
+    /// Adds a grain as the last, with that number. `areal_density` in kg/m².
+    pub(crate) fn push(&mut self, grain: &Grain, areal_density: f64, id: u32) {
+        self.ids.push(id);
         self.positions.push(grain.position);
         self.velocities.push(grain.velocity);
         self.angles.push(0.0);
@@ -116,6 +125,7 @@ impl Grains {
             ("feels_gravity", self.feels_gravity.len()),
             ("tones", self.tones.len()),
             ("brought_back", self.brought_back.len()),
+            ("ids", self.ids.len()),
         ];
         match lengths.into_iter().find(|&(_, length)| length != count) {
             None => Ok(()),
@@ -137,6 +147,7 @@ impl Grains {
         self.feels_gravity.remove(index);
         self.tones.remove(index);
         self.brought_back.remove(index);
+        self.ids.remove(index);
     }
 
     /// Number of discs.

@@ -65,7 +65,6 @@ pub(super) const LOST: usize = 2;
 struct GrainTableRow {
     step: u64,
     time_secs: f64,
-    id: u64,
     kind: usize,
     state: GrainState,
 }
@@ -76,7 +75,12 @@ const UNWRAPPED: &str =
 const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    column("id", "", "number of the disc; fixed discs follow the grains", Count(|row| row.id)),
+    column(
+        "id",
+        "",
+        "number of the disc in all frames; fixed discs follow the grains, and grains put in later follow boundaries",
+        Count(|row| row.state.id.into()),
+    ),
     column("x", "m", "centre", Number(|row| row.state.position.x)),
     column("y", "m", "centre", Number(|row| row.state.position.y)),
     column("angle", "rad", "turned since the start, anticlockwise", Number(|row| row.state.angle)),
@@ -112,11 +116,9 @@ pub(super) fn empty_grains() -> Table {
 pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
     let moving = moment.grains.iter().map(|state| (if state.lost { LOST } else { GRAIN }, *state));
-    let fixed = fixed_discs(&moment.surroundings).map(|state| (FIXED, state));
-    let rows = moving.chain(fixed).zip(0..);
-    let rows: Vec<GrainTableRow> = rows
-        .map(|((kind, state), id)| GrainTableRow { step, time_secs, id, kind, state })
-        .collect();
+    let fixed = fixed_discs(moment).map(|state| (FIXED, state));
+    let row = |(kind, state)| GrainTableRow { step, time_secs, kind, state };
+    let rows: Vec<GrainTableRow> = moving.chain(fixed).map(row).collect();
     grains_of(&rows, measures)
 }
 
@@ -132,21 +134,21 @@ const CONTACTS: &str = "contacts";
 pub(super) const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
 /// How tables call bodies j.
-pub(super) struct OtherBodies {
-    grains: u64,
-    discs: u64,
+pub(super) struct OtherBodies<'a> {
+    moment: &'a Moment,
+    first_boundary: u64,
     /// Shapes and numbers of boundaries, behind a name that is none.
     pub names: Vec<String>,
 }
 
-impl OtherBodies {
-    pub(super) fn of(moment: &Moment) -> Self {
+impl<'a> OtherBodies<'a> {
+    pub(super) fn of(moment: &'a Moment) -> Self {
         let boundaries = moment.surroundings.boundaries.iter().enumerate();
         let names = boundaries.map(|(number, boundary)| format!("{} {number}", boundary.word()));
-        let grains = moment.grains.len() as u64;
+        let discs = moment.surroundings.fixed_discs.len() as u64;
         Self {
-            grains,
-            discs: grains + moment.surroundings.fixed_discs.len() as u64,
+            moment,
+            first_boundary: u64::from(moment.first_fixed_id) + discs,
             names: std::iter::once(String::new()).chain(names).collect(),
         }
     }
@@ -154,9 +156,11 @@ impl OtherBodies {
     /// Place of its kind's word, number, and place of its name.
     pub(super) fn told(&self, other: OtherBody) -> (u32, u64, u32) {
         match other {
-            OtherBody::Grain(number) => (0, number.into(), 0),
-            OtherBody::FixedDisc(number) => (1, self.grains + u64::from(number), 0),
-            OtherBody::Boundary(number) => (2, self.discs + u64::from(number), 1 + number),
+            OtherBody::Grain(number) => (0, self.moment.id(number).into(), 0),
+            OtherBody::FixedDisc(number) => {
+                (1, u64::from(self.moment.first_fixed_id) + u64::from(number), 0)
+            }
+            OtherBody::Boundary(number) => (2, self.first_boundary + u64::from(number), 1 + number),
         }
     }
 }
@@ -167,6 +171,7 @@ const STATUSES: &[&str] =
 struct ContactTableRow {
     step: u64,
     time_secs: f64,
+    id: u32,
     other_id: u64,
     kind: u32,
     /// Place in the list of names.
@@ -178,11 +183,11 @@ struct ContactTableRow {
 const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    column("id_i", "", "grain i", Count(|row| row.state.grain.into())),
+    column("id_i", "", "grain i", Count(|row| row.id.into())),
     column(
         "id_j",
         "",
-        "body j: a grain, after them a fixed disc, after those a boundary",
+        "body j, by its id: a grain, after them a fixed disc, after those a boundary",
         Count(|row| row.other_id),
     ),
     column("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
@@ -252,7 +257,8 @@ pub(super) fn contacts(moment: &Moment) -> Table {
     let others = OtherBodies::of(moment);
     let row = |state: &ContactState| {
         let (kind, other_id, name) = others.told(state.other);
-        ContactTableRow { step, time_secs, other_id, kind, name, has_bonds, state: *state }
+        let id = moment.id(state.grain);
+        ContactTableRow { step, time_secs, id, other_id, kind, name, has_bonds, state: *state }
     };
     let rows: Vec<ContactTableRow> = moment.contacts.iter().map(row).collect();
     Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)

@@ -5,11 +5,11 @@ use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
 use std::path::{Path, PathBuf};
 
 use super::columns::empty_tables_of_frames;
-use super::format::{Format, Frame, RunFacts};
-use super::recording_folder::{make_folder, remove};
+use super::format::{Format, Frame, RecordingMark, RunFacts, check_count};
+use super::recording_folder::make_folder;
 use super::table::{Table, Values};
 use crate::error::{Error, Result};
-use crate::output::GrowingFile;
+use crate::output::{GrowingFile, remove_if_there};
 use crate::sim::Observables;
 
 pub(super) const FOLDER: &str = "csv";
@@ -46,6 +46,15 @@ impl Format for Csv {
     fn finish(&mut self) -> Result<()> {
         let mut tables = self.of_frames.iter_mut().chain([&mut self.steps]);
         tables.try_for_each(TextTable::finish)
+    }
+
+    fn check(&self, step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()> {
+        let of_frames =
+            self.of_frames.iter().zip(mark.rows).map(|(it, rows)| (it, last_frame, rows));
+        for (table, until, rows) in of_frames.chain([(&self.steps, Some(step), mark.steps)]) {
+            check_count(&table.path, "rows", table.rows_there(until, u64::MAX)?.0.rows, rows)?;
+        }
+        Ok(())
     }
 
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()> {
@@ -120,22 +129,23 @@ impl TextTable {
     /// Drops the rows after a step, or all, and a half row at the end.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
-        let file = match File::open(&self.path) {
-            Ok(file) => file,
-            Err(error) if error.kind() == NotFound => return Ok(KeptRows::default()),
-            Err(error) => return Err(Error::file(&self.path, error)),
-        };
-        let (kept, whole) = self.rows_until(step, BufReader::new(file))?;
+        let (kept, whole) = self.rows_there(step, u64::MAX)?;
         if kept.rows == 0 {
-            remove(&self.path)?;
+            remove_if_there(&self.path)?;
         } else {
             self.file = Some(GrowingFile::go_on(self.path.clone(), whole)?);
         }
         Ok(kept)
     }
 
-    /// The rows up to a step, and how many bytes reach to their end.
-    fn rows_until(&self, step: Option<u64>, mut file: impl BufRead) -> Result<(KeptRows, u64)> {
+    /// The rows of the file up to a step, at most so many, and the length of these, bytes; none without a
+    /// file.
+    pub(super) fn rows_there(&self, step: Option<u64>, most: u64) -> Result<(KeptRows, u64)> {
+        let mut file = match File::open(&self.path) {
+            Ok(file) => BufReader::new(file),
+            Err(error) if error.kind() == NotFound => return Ok((KeptRows::default(), 0)),
+            Err(error) => return Err(Error::file(&self.path, error)),
+        };
         let (mut kept, mut whole, mut number) = (KeptRows::default(), 0, 0);
         let mut names_seen = false;
         let mut line = Vec::new();
@@ -147,7 +157,7 @@ impl TextTable {
             let Some(text) = line.strip_suffix(b"\n") else { return Ok((kept, whole)) };
             if names_seen {
                 let there = step_of(text).ok_or_else(|| self.refuse(number, text))?;
-                if Some(there) > step {
+                if Some(there) > step || kept.rows == most {
                     return Ok((kept, whole));
                 }
                 kept = KeptRows { rows: kept.rows + 1, step: Some(there) };

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 use super::columns;
 use super::csv::Csv;
 use super::lammps::Lammps;
@@ -68,6 +70,42 @@ impl Frame {
     }
 }
 
+/// How much a recording has of a run at one moment. All of it must still be there when the run is resumed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordingMark {
+    /// Frames.
+    pub frames: u64,
+    /// Rows of the table of steps.
+    pub steps: u64,
+    /// Rows of the tables that each frame adds to, in the order in which `data.json` lists them.
+    pub rows: [u64; 6],
+}
+
+impl RecordingMark {
+    pub(super) fn add(&mut self, frame: &Frame) {
+        self.frames += 1;
+        self.rows
+            .iter_mut()
+            .zip(frame.tables())
+            .for_each(|(rows, table)| *rows += table.len() as u64);
+    }
+}
+
+/// Refuses a file or a folder of files that has lost rows, frames or the like (`things`) since the run was saved.
+///
+/// # Errors
+/// Names it, with both counts.
+pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) -> Result<()> {
+    if found == marked {
+        return Ok(());
+    }
+    let reason = format!(
+        "has {found} {things} of the saved run, but must have all {marked}; --overwrite starts the run again"
+    );
+    Err(Error::file(path, reason))
+}
+
 /// A way to write frames down. It is used by one thread, which is not the solver's.
 ///
 /// Whatever was written before stays readable whenever the program is killed. A format starts in a
@@ -90,6 +128,12 @@ pub(super) trait Format: Send {
     fn finish(&mut self) -> Result<()> {
         self.flush()
     }
+
+    /// Checks that all is there that was written up to `step` and to the frame of the step `last_frame`. Changes nothing.
+    ///
+    /// # Errors
+    /// Names a file that lacks some of it.
+    fn check(&self, step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()>;
 
     /// Drops what steps after `step` measured, and all frames after that of the step `last_frame`, or all that
     /// there are, so that the run can go on from `step`.

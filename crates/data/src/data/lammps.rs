@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
-use super::format::{Format, Frame, RunFacts};
+use super::format::{Format, Frame, RecordingMark, RunFacts, check_count};
 use super::recording_folder::{make_folder, remove};
 use super::table::{Column, Table, Values};
 use crate::error::{Error, Result};
@@ -57,8 +57,12 @@ const LEFT_OUT: [&str; 3] = ["step", "time", "name_j"];
 /// elements of chemistry alone. All others have numbers for words.
 const IN_WORDS: &str = "element";
 const ELEMENTS: [&str; 3] = ["H", "He", "Li"];
+/// What says the number of rows of a frame.
+const COUNT: &str = "ITEM: NUMBER OF ";
 /// What dumps call grains.
-const ATOMS: &str = "ATOMS";
+const ATOMS: &str = LABELS[0];
+/// What dumps call the rows of grains, contacts and walls.
+const LABELS: [&str; 3] = ["ATOMS", "BONDS", "ENTRIES"];
 /// LAMMPS counts types from here.
 const FIRST_TYPE: u32 = 1;
 
@@ -96,6 +100,13 @@ impl Format for Lammps {
     fn finish(&mut self) -> Result<()> {
         let files = [&self.grains.file, &self.contacts.file, &self.walls.file];
         files.into_iter().flatten().try_for_each(GrowingFile::sync)
+    }
+
+    fn check(&self, _step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()> {
+        [&self.grains, &self.contacts, &self.walls].into_iter().try_for_each(|dump| {
+            let found = whole_frames(&dump.path, last_frame)?;
+            check_count(&dump.path, "whole frames", found, mark.frames)
+        })
     }
 
     fn roll_back(&mut self, _step: u64, last_frame: Option<u64>) -> Result<()> {
@@ -166,6 +177,40 @@ fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     }
 }
 
+/// The number of frames of a dump of ours up to a step that have all their rows; 0 without a file.
+fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
+    let mut lines = match File::open(path) {
+        Ok(file) => BufReader::new(file),
+        Err(error) if error.kind() == NotFound => return Ok(0),
+        Err(error) => return Err(Error::file(path, error)),
+    };
+    let mut next = || -> Result<Option<String>> {
+        let mut line = String::new();
+        lines.read_line(&mut line).map_err(|error| Error::file(path, error))?;
+        Ok(line.strip_suffix('\n').map(str::to_owned))
+    };
+    let number = |line: Option<String>| line.and_then(|line| line.parse::<u64>().ok());
+    let (mut frames, mut count) = (0, 0);
+    while let Some(line) = next()? {
+        if line == STEP {
+            let there = number(next()?);
+            if there.is_none() || there > step {
+                break;
+            }
+        } else if line.starts_with(COUNT) {
+            count = number(next()?).unwrap_or(u64::MAX);
+        } else if LABELS.iter().any(|label| line.starts_with(&format!("ITEM: {label} "))) {
+            for _ in 0..count {
+                if next()?.is_none_or(|row| row.starts_with("ITEM: ")) {
+                    return Ok(frames);
+                }
+            }
+            frames += 1;
+        }
+    }
+    Ok(frames)
+}
+
 /// The text of a frame.
 struct FrameText {
     /// Ahead of the first frame: units, and what is to be known of the run. Readers skip items that
@@ -185,7 +230,7 @@ fn grains(frame: &Frame) -> FrameText {
 /// A row a wall.
 fn walls(frame: &Frame) -> FrameText {
     let rows = 0..frame.walls.len();
-    dump("ENTRIES", frame, (&frame.walls, &[]), rows)
+    dump(LABELS[2], frame, (&frame.walls, &[]), rows)
 }
 
 /// A row a contact between two discs.
@@ -194,7 +239,7 @@ fn contacts(frame: &Frame, facts: &RunFacts) -> FrameText {
     let between_discs =
         contacts.filter(|(_, contact)| !matches!(contact.other, OtherBody::Boundary(_)));
     let rows: Vec<usize> = between_discs.map(|(row, _)| row).collect();
-    let mut text = dump("BONDS", frame, (&frame.contacts, &CONTACT_COLUMNS), rows.into_iter());
+    let mut text = dump(LABELS[1], frame, (&frame.contacts, &CONTACT_COLUMNS), rows.into_iter());
     text.front = front(facts, frame);
     text
 }

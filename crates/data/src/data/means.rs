@@ -66,6 +66,7 @@ struct PairTableRow {
     step: u64,
     time_secs: f64,
     secs: f64,
+    id: u32,
     other_id: u64,
     kind: u32,
     /// Place in the list of names.
@@ -79,7 +80,7 @@ const PAIR_COLUMNS: &[ColumnSpec<PairTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
     column("mean_time", "s", OVER, Number(|row| row.secs)),
-    column("id_i", "", "grain i", Count(|row| row.sum.grain.into())),
+    column("id_i", "", "grain i", Count(|row| row.id.into())),
     column("id_j", "", "body j, as contacts have it", Count(|row| row.other_id)),
     column("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
     column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
@@ -105,7 +106,8 @@ fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
     let others = OtherBodies::of(moment);
     let row = |&sum: &PairSum| {
         let (kind, other_id, name) = others.told(sum.other);
-        PairTableRow { step, time_secs, secs: sums.secs, other_id, kind, name, sum }
+        let id = moment.id(sum.grain);
+        PairTableRow { step, time_secs, secs: sums.secs, id, other_id, kind, name, sum }
     };
     let rows: Vec<PairTableRow> = sums.pairs.iter().map(row).collect();
     Table::new("pairs", PAIR_COLUMNS, &rows, &others.names)

@@ -22,10 +22,10 @@ mod walls;
 
 pub use crate::scene::{DataSettings, FormatName};
 pub use columns::Observed;
-pub use format::{DEFAULT_FORMAT, Frame, RunFacts, check_format, formats_of};
+pub use format::{DEFAULT_FORMAT, Frame, RecordingMark, RunFacts, check_format, formats_of};
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};
 pub use recording::{FrameSchedule, Recording, Times};
-pub(crate) use recording_folder::check_not_periodic;
+pub(crate) use recording_folder::facts_of_recording;
 pub use recording_folder::{RecordingFolder, remove_recording};
 pub use step_columns::STEP_COLUMNS;
 pub use table::{Column, Table, Values};

@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 
 use super::columns::{FrameRow, frames};
 use super::csv::{KeptRows, TextTable};
-use super::format::{Format, Frame, RunFacts, check_format, start_format};
+use super::format::{Format, Frame, RecordingMark, RunFacts, check_format, start_format};
 use super::recording_folder::{FRAMES, RecordingFolder, check_manifest, write_manifest};
 use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
@@ -48,7 +48,7 @@ pub struct Recording {
     /// Rows that wait for the next frame.
     rows: Vec<Observables>,
     frames: u64,
-    /// Step of the last frame that was there when it was gone on with.
+    /// Step of the last frame that was there when it was resumed.
     last_step: Option<u64>,
     schedule: Option<FrameSchedule>,
     /// None once the recording has ended, be it by an error.
@@ -95,24 +95,41 @@ impl Recording {
         Self::with(folder, writer, 0, None)
     }
 
-    /// Goes on with the recording in a folder, for a run that goes on from a step: what was recorded after
-    /// it is dropped. Without a recording there one is started. By then it had `frames`.
+    /// Resumes the recording in a folder, for a run that is resumed at a step, at which the recording had as much as
+    /// `mark` says. Later rows are dropped. Without a recording there one is started.
     ///
     /// # Errors
-    /// As [`Recording::start`], and where a file there is not what this version writes, or frames are missing.
+    /// As [`Recording::start`], and if a file is not as this version writes it, or has lost anything of that.
+    /// Then nothing is changed.
     pub fn go_on(
         folder: &Path,
         formats: &[FormatName],
         facts: &RunFacts,
         step: u64,
-        frames: u64,
+        mark: &RecordingMark,
     ) -> Result<Self> {
         let folder = RecordingFolder::to_go_on(folder)?;
         check_manifest(folder.path(), formats)?;
         let mut writer = FormatsWriter::start(folder.path(), formats, facts)?;
-        let kept = writer.roll_back(step, frames)?;
+        let kept = writer.roll_back(step, mark)?;
         write_manifest(folder.path(), formats, facts)?;
         Self::with(folder, writer, kept.rows, kept.step)
+    }
+
+    /// Checks that [`Recording::go_on`] will find all that it needs.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn check(
+        folder: &Path,
+        formats: &[FormatName],
+        step: u64,
+        mark: &RecordingMark,
+    ) -> Result<()> {
+        let folder = RecordingFolder::to_go_on(folder)?;
+        check_manifest(folder.path(), formats)?;
+        let writer = FormatsWriter::start(folder.path(), formats, &RunFacts::default())?;
+        writer.check(step, mark).map(drop)
     }
 
     fn with(
@@ -207,16 +224,16 @@ impl Recording {
         if is_due { self.add(simulation.moment()) } else { Ok(()) }
     }
 
-    /// Waits until everything is where readers find it.
+    /// Waits until readers find everything, and gives how much that is.
     ///
     /// # Errors
     /// Where something could not be written.
-    pub fn flush(&mut self) -> Result<()> {
+    pub fn flush(&mut self) -> Result<RecordingMark> {
         self.send_rows()?;
         let (done, answer) = sync_channel(1);
         self.send(RecordingMessage::Flush(done))?;
         // No answer comes where the writer has failed, which is told here.
-        if answer.recv().is_ok() { Ok(()) } else { self.end() }
+        answer.recv().or_else(|_| self.end().map(|()| RecordingMark::default()))
     }
 
     /// Ends the recording.
@@ -267,7 +284,7 @@ enum RecordingMessage {
     /// A frame, by the number of those before.
     Frame(u64, Box<(Moment, ForceSums)>),
     /// Everything is to be written before this is answered.
-    Flush(SyncSender<()>),
+    Flush(SyncSender<RecordingMark>),
 }
 
 /// Writes every format on a thread of its own, and the list of frames that every format has.
@@ -276,6 +293,8 @@ struct FormatsWriter {
     index: TextTable,
     /// Frames that formats have taken and may not have written.
     waiting: Vec<FrameRow>,
+    /// How much they have taken.
+    mark: RecordingMark,
 }
 
 impl FormatsWriter {
@@ -284,19 +303,31 @@ impl FormatsWriter {
         let formats = formats.iter().map(|format| start_format(*format, folder, facts));
         let formats = formats.collect::<Result<_>>()?;
         let index = TextTable::new(folder.join(FRAMES), &RunFacts::default(), &frames(&[]));
-        Ok(Self { formats, index, waiting: Vec::new() })
+        Ok(Self { formats, index, waiting: Vec::new(), mark: RecordingMark::default() })
     }
 
-    /// Drops what was recorded after a step, and frames that not every format has.
-    fn roll_back(&mut self, step: u64, frames: u64) -> Result<KeptRows> {
-        let kept = self.index.roll_back(Some(step))?;
-        if kept.rows < frames {
-            let allowed =
-                format!("all {frames} that it had when the run was saved; --overwrite begins anew");
+    /// Checks that there is as much as `mark` says of a step, and gives the frames of that.
+    fn check(&self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
+        let (kept, _) = self.index.rows_there(Some(step), mark.frames)?;
+        if kept.rows < mark.frames {
+            let allowed = format!(
+                "all {} that it had when the run was saved; --overwrite starts the run again",
+                mark.frames
+            );
             return Err(Error::value("frames of the recording", kept.rows, allowed));
         }
+        self.formats.iter().try_for_each(|format| format.check(step, kept.step, mark))?;
+        Ok(kept)
+    }
+
+    /// Drops all that was recorded after a step, at which there was as much as `mark` says; drops nothing if
+    /// something of that is missing.
+    fn roll_back(&mut self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
+        let kept = self.check(step, mark)?;
+        self.index.roll_back(kept.step)?;
         let mut formats = self.formats.iter_mut();
         formats.try_for_each(|format| format.roll_back(step, kept.step))?;
+        self.mark = *mark;
         Ok(kept)
     }
 
@@ -330,12 +361,14 @@ impl FormatsWriter {
     fn take(&mut self, message: RecordingMessage) -> Result<()> {
         match message {
             RecordingMessage::Steps(rows) => {
+                self.mark.steps += rows.len() as u64;
                 self.formats.iter_mut().try_for_each(|format| format.add_steps(&rows))
             }
             RecordingMessage::Frame(number, taken) => {
                 let (moment, sums) = *taken;
                 let frame = Frame::new(number, moment, &sums);
                 let Observables { step, time_secs, .. } = frame.moment.observables;
+                self.mark.add(&frame);
                 self.formats.iter_mut().try_for_each(|format| format.add(&frame))?;
                 self.waiting.push(FrameRow { step, time_secs, number });
                 Ok(())
@@ -343,7 +376,7 @@ impl FormatsWriter {
             RecordingMessage::Flush(done) => {
                 self.flush()?;
                 // Whoever asked may have gone.
-                let _ = done.send(());
+                let _ = done.send(self.mark);
                 Ok(())
             }
         }

@@ -220,21 +220,12 @@ pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()
     Err(Error::value("data-format", names.join(","), allowed))
 }
 
-/// Fails where grains, in a recording or a table of it, are of a scene whose borders wrap: the pile that they would start
-/// has none, and a gravity of its own.
-pub(crate) fn check_not_periodic(path: &Path) -> Result<()> {
-    let manifests = path.ancestors().take(3).map(|folder| folder.join(MANIFEST));
-    let Some(text) = manifests.filter_map(|path| std::fs::read(path).ok()).next() else {
-        return Ok(());
-    };
-    let manifest: Value = serde_json::from_slice(&text).unwrap_or_default();
-    let facts = manifest["about"].as_object();
-    if facts.is_some_and(|facts| facts.keys().any(|name| name.starts_with("periodic."))) {
-        let reason = "is of a scene with periodic borders, but must be of one without, as the pile \
-                      that it starts has none: go on with such a run by --restart";
-        return Err(Error::file(path, reason));
-    }
-    Ok(())
+/// Facts about the scene of a recording, by name; `path` is its folder or a table of it. None without a recording.
+pub(crate) fn facts_of_recording(path: &Path) -> Option<Map<String, Value>> {
+    let mut manifests = path.ancestors().take(3).map(|folder| folder.join(MANIFEST));
+    let text = manifests.find_map(|path| std::fs::read(path).ok())?;
+    let mut manifest: Value = serde_json::from_slice(&text).ok()?;
+    manifest.get_mut("about").and_then(Value::as_object_mut).map(std::mem::take)
 }
 
 fn column_in_manifest(column: &Column) -> Value {

@@ -104,10 +104,12 @@ impl Table {
 }
 
 /// The fixed discs as their motions have them go.
-pub(super) fn fixed_discs(surroundings: &Surroundings) -> impl Iterator<Item = GrainState> + '_ {
+pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> + '_ {
+    let surroundings = &moment.surroundings;
     surroundings.fixed_discs.iter().enumerate().map(|(number, disc)| {
         let motion = surroundings.moving.iter().find(|it| it.fixed_discs.contains(&number));
         GrainState {
+            id: moment.first_fixed_id + number as u32,
             position: disc.position,
             unwrapped: disc.position,
             angle: motion.map_or(0.0, |motion| motion.turned),

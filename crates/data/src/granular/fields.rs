@@ -64,6 +64,15 @@ impl Fields {
     /// # Errors
     /// Where the width is none, or so small that there would be too many cells, or a number of the moment is not finite.
     pub fn of(moment: &Moment, width: f64) -> Result<Self> {
+        Self::in_box(moment, width, [DVec2::MIN, DVec2::MAX])
+    }
+
+    /// Fields of the grains in a box, from its lower left to its upper right corner, m, and a smoothing width around it.
+    /// The rest is left out.
+    ///
+    /// # Errors
+    /// As [`Fields::of`].
+    pub fn in_box(moment: &Moment, width: f64, [least, most]: [DVec2; 2]) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
             return Err(Error::value("width", width, "a finite length > 0 in m"));
         }
@@ -80,16 +89,13 @@ impl Fields {
         let centres = network.grains().map(|(_, grain)| grain.position);
         let touched = network.links.iter();
         let touched = touched.map(|link| network.grains[link.grain].position - link.branch());
-        let reach = |at: DVec2| [at, at];
-        let wider =
-            |[low, high]: [DVec2; 2], [other, one]: [DVec2; 2]| [low.min(other), high.max(one)];
-        // Where all grains are lost, there is nothing about the origin.
-        let [low, high] =
-            centres.chain(touched).map(reach).reduce(wider).unwrap_or([DVec2::ZERO; 2]);
-        let axes = [
-            GridAxis::of(periodic.x, [low.x, high.x], width),
-            GridAxis::of(periodic.y, [low.y, high.y], width),
-        ];
+        // Borders that wrap have everything between them.
+        let is_in = |at: &DVec2| {
+            (periodic.x.is_some() || (least.x..=most.x).contains(&at.x))
+                && (periodic.y.is_some() || (least.y..=most.y).contains(&at.y))
+        };
+        let [low, high] = box_of(centres.chain(touched).filter(is_in));
+        let axes = axes_over(periodic, [low, high], width);
         let count: f64 = axes.iter().map(|axis| axis.cells).product();
         if count > MOST_CELLS {
             let allowed = format!("so large that {count:.0} cells become {MOST_CELLS} or fewer");
@@ -111,6 +117,12 @@ impl Fields {
         };
         fields.fill(&network, &Smoothing { axes, periodic, width });
         Ok(fields)
+    }
+
+    /// True if fields of all of a box have no more cells than there may be.
+    pub fn are_few(periodic: Option<Periodic>, corners: [DVec2; 2], width: f64) -> bool {
+        let axes = axes_over(periodic.unwrap_or_default(), corners, width);
+        axes.iter().map(|axis| axis.cells).product::<f64>() <= MOST_CELLS
     }
 
     fn fill(&mut self, network: &Network<'_>, smoothing: &Smoothing) {
@@ -167,6 +179,19 @@ impl Fields {
     }
 }
 
+/// The corners of the smallest box around places; both at the origin if there are none.
+pub(crate) fn box_of(places: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
+    let wider = |[low, high]: [DVec2; 2], [other, one]: [DVec2; 2]| [low.min(other), high.max(one)];
+    places.map(|at| [at, at]).reduce(wider).unwrap_or([DVec2::ZERO; 2])
+}
+
+fn axes_over(periodic: Periodic, [low, high]: [DVec2; 2], width: f64) -> [GridAxis; 2] {
+    [
+        GridAxis::of(periodic.x, [low.x, high.x], width),
+        GridAxis::of(periodic.y, [low.y, high.y], width),
+    ]
+}
+
 /// a ⊗ b.
 fn outer(a: DVec2, b: DVec2) -> DMat2 {
     DMat2::from_cols(b.x * a, b.y * a)
@@ -196,14 +221,14 @@ impl GridAxis {
     }
 
     /// Shares of the cells in what is smeared around a place: cell, share, and by how many periods the cell lies beyond the
-    /// upper border. They add up to 1.
+    /// upper border. They add up to 1, unless some of it lies outside of the grid.
     fn shares(&self, place: f64, width: f64) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         let knots = knots(width);
         let at = move |cell: f64| self.origin + cell * self.side;
         let number = |place: f64| ((place - self.origin) / self.side).floor();
         let (from, to) = (number(place - 2.0 * knots), number(place + 2.0 * knots));
         let mut below = 0.0;
-        (from as i64..=to as i64).map(move |cell| {
+        (from as i64..=to as i64).filter_map(move |cell| {
             let whole = if cell as f64 == to {
                 1.0
             } else {
@@ -212,9 +237,11 @@ impl GridAxis {
             let share = whole - std::mem::replace(&mut below, whole);
             if self.wraps {
                 let cells = self.cells as i64;
-                (cell.rem_euclid(cells) as usize, share, cell.div_euclid(cells) as f64)
+                Some((cell.rem_euclid(cells) as usize, share, cell.div_euclid(cells) as f64))
             } else {
-                ((cell - self.first) as usize, share, 0.0)
+                let number = usize::try_from(cell - self.first).ok();
+                let number = number.filter(|&number| (number as f64) < self.cells);
+                number.map(|number| (number, share, 0.0))
             }
         })
     }

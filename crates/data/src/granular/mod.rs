@@ -24,6 +24,7 @@ mod stress;
 
 pub use crate::column_spec::{CellValue, ColumnSpec};
 pub use fields::Fields;
+pub(crate) use fields::box_of;
 pub use histograms::{Histogram, histograms};
 pub use measures::{GrainMeasures, PileMeasures};
 

@@ -17,9 +17,10 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
 use super::columns::empty_tables_of_frames;
-use super::format::{Format, Frame, RunFacts};
+use super::format::{Format, Frame, RecordingMark, RunFacts, check_count};
 use super::recording_folder::{make_folder, numbered_parts, path_of_part, remove};
 use super::table::{Column, Table, Values};
+use crate::column_spec::STEP;
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::Observables;
@@ -61,6 +62,12 @@ impl Format for Parquet {
     fn flush(&mut self) -> Result<()> {
         let mut tables = self.of_frames.iter_mut().chain([&mut self.steps]);
         tables.try_for_each(GrowingParts::flush)
+    }
+
+    fn check(&self, step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()> {
+        let mut of_frames = self.of_frames.iter().zip(mark.rows);
+        of_frames.try_for_each(|(parts, rows)| parts.check(last_frame, rows))?;
+        self.steps.check(Some(step), mark.steps)
     }
 
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()> {
@@ -123,6 +130,23 @@ impl GrowingParts {
         file.finish(false)?;
         (self.has_news, self.has_file) = (false, true);
         Ok(())
+    }
+
+    /// Checks that there are so many rows up to a step.
+    fn check(&self, step: Option<u64>, marked: u64) -> Result<()> {
+        let mut rows = 0;
+        // Steps rise, so all parts ahead of one that has a row up to there are wanted as a whole.
+        for (_, path) in numbered_parts(&self.folder)?.into_iter().rev() {
+            let part = ParquetFile::open(&path)?;
+            let Some(Decoded::Whole(steps)) = (if rows == 0 { part.column(STEP)? } else { None })
+            else {
+                rows += part.rows() as u64;
+                continue;
+            };
+            let steps = steps.into_iter().filter_map(|there| u64::try_from(there?).ok());
+            rows += steps.filter(|&there| Some(there) <= step).count() as u64;
+        }
+        check_count(&self.folder, "rows", rows, marked)
     }
 
     /// Drops the rows after a step, or all.

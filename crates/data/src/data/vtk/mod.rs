@@ -9,6 +9,7 @@
 //! words in the order of the numbers, `columns` what each column is and its unit, `about` the run. What is
 //! measured of the whole pile is there too, as `pile_NAME`, and what walls do, with a value a wall, as `wall_NAME`.
 
+mod fields_file;
 mod vtk_file;
 
 use std::fs::File;
@@ -17,13 +18,13 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
+use self::fields_file::{FieldsBox, fields_file};
 use self::vtk_file::{VtkCells, VtkFile};
-use super::format::{Format, Frame, RunFacts};
+use super::format::{Format, Frame, RecordingMark, RunFacts};
 use super::recording_folder::{files_named, make_folder, remove};
 use super::table::{Column, Table, Values};
 use crate::column_spec::STEP;
 use crate::error::{Error, Result};
-use crate::granular::Fields;
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
 
@@ -39,7 +40,7 @@ struct VtkKind {
     name: &'static str,
     /// Which they end with.
     ending: &'static str,
-    file: fn(&Frame, &RunFacts) -> Result<Vec<u8>>,
+    file: fn(&Frame, &RunFacts, &mut Option<FieldsBox>) -> Result<Vec<u8>>,
 }
 
 /// Grains and contacts.
@@ -49,12 +50,12 @@ pub(super) const BODIES: VtkFolder = VtkFolder {
         VtkKind {
             name: "grains",
             ending: ".vtp",
-            file: |frame, facts| Ok(grains_file(frame, facts)),
+            file: |frame, facts, _| Ok(grains_file(frame, facts)),
         },
         VtkKind {
             name: "contacts",
             ending: ".vtp",
-            file: |frame, facts| Ok(contacts_file(frame, facts)),
+            file: |frame, facts, _| Ok(contacts_file(frame, facts)),
         },
     ],
 };
@@ -68,8 +69,8 @@ const ENDING_OF_SERIES: &str = ".pvd";
 
 /// What the time is called, s: VTK's readers look for this name.
 const TIME: &str = "TimeValue";
-/// Bytes in which a file says both.
-const LONGEST_HEAD: u64 = 1024;
+/// Bytes in which a file says its numbers.
+const LONGEST_HEAD: u64 = 4096;
 /// Columns that are the same in all rows of a frame.
 const OF_FRAME: [&str; 2] = ["step", "time"];
 /// In front of the names of what is measured of the whole pile, since grains have arrays of the same names.
@@ -103,13 +104,16 @@ pub(super) struct Vtk {
     facts: RunFacts,
     /// Once there is a frame, or frames of before are gone on with; one of a kind.
     series: Vec<PvdSeries>,
+    /// What fields cover, once there is a frame of them.
+    of_fields: Option<FieldsBox>,
 }
 
 impl Vtk {
     pub(super) fn start(folder: &Path, files: &VtkFolder, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(files.name);
         make_folder(&folder)?;
-        Ok(Self { folder, kinds: files.kinds, facts: facts.clone(), series: Vec::new() })
+        let (facts, kinds) = (facts.clone(), files.kinds);
+        Ok(Self { folder, kinds, facts, series: Vec::new(), of_fields: None })
     }
 
     /// Begins the series with the files of the first frames, each with its time, s.
@@ -153,13 +157,27 @@ impl Format for Vtk {
             self.begin(&[])?;
         }
         for (kind, series) in self.kinds.iter().zip(&mut self.series) {
-            let bytes = (kind.file)(frame, &self.facts)?;
+            let bytes = (kind.file)(frame, &self.facts, &mut self.of_fields)?;
             let name = kind.file_name(frame.number);
             let mut file = PendingFile::start(&self.folder.join(&name))?;
             file.write(&bytes)?;
             // A run does not wait for the disk.
             file.finish(false)?;
             series.add(frame.moment.observables.time_secs, &name)?;
+        }
+        Ok(())
+    }
+
+    fn check(&self, _step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()> {
+        for kind in self.kinds {
+            let is_there = |number: &u64| {
+                let path = self.folder.join(kind.file_name(*number));
+                is_whole(&path) && moment_of(&path).is_ok_and(|(step, _)| Some(step) <= last_frame)
+            };
+            if let Some(lost) = (0..mark.frames).find(|number| !is_there(number)) {
+                let reason = "is missing or cut, but must be as the saved run left it; --overwrite starts the run again";
+                return Err(Error::file(self.folder.join(kind.file_name(lost)), reason));
+            }
         }
         Ok(())
     }
@@ -184,6 +202,8 @@ impl Format for Vtk {
             // What readers look at goes first.
             self.begin(&times)?;
         }
+        let first = self.folder.join(self.kinds[0].file_name(0));
+        self.of_fields = if times.is_empty() { None } else { FieldsBox::of_file(&first) };
         let is_later = |name: &str| {
             let number = self.kinds.iter().find_map(|kind| kind.number_of(name));
             number.map_or(name.ends_with(ENDING_OF_SERIES) && times.is_empty(), |number| {
@@ -216,70 +236,34 @@ fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
         .finish("normal_force")
 }
 
-/// What the fields are, for the file's `columns`.
-const OF_FIELDS: [&str; 10] = [
-    "density [kg/m^2]: smoothed with smoothing_width, m, the standard deviation along each axis; means over cells",
-    "momentum [kg/(m s)]: likewise",
-    "velocity [m/s]: momentum over density; NaN where there is none",
-    "kinetic_stress_xx [N/m]: of velocities relative to that of the cell, compression positive",
-    "kinetic_stress_xy [N/m]: likewise, and the same as yx",
-    "kinetic_stress_yy [N/m]: likewise",
-    "contact_stress_xx [N/m]: of forces along the ways between centres, compression positive",
-    "contact_stress_xy [N/m]: x of the forces, y of the ways",
-    "contact_stress_yx [N/m]: y of the forces, x of the ways",
-    "contact_stress_yy [N/m]: likewise",
-];
+/// True if a file is there up to its last word.
+fn is_whole(path: &Path) -> bool {
+    let mut end = Vec::new();
+    let read = File::open(path).and_then(|mut file| {
+        file.seek(SeekFrom::End(-(vtk_file::END.len() as i64)))?;
+        file.read_to_end(&mut end)
+    });
+    read.is_ok() && end == vtk_file::END.as_bytes()
+}
 
-/// Fields as an image, smoothed by a mean diameter, or by twice as much as often as it takes: a grain that is far away would
-/// make the grid too large.
-fn fields_file(frame: &Frame, facts: &RunFacts) -> Result<Vec<u8>> {
-    let mut width = frame.moment.surroundings.mean_diameter;
-    let mut fields = Fields::of(&frame.moment, width);
-    while fields.is_err() && width.is_finite() {
-        width *= 2.0;
-        fields = Fields::of(&frame.moment, width);
-    }
-    let fields = fields?;
-    let along = |axis: usize| [fields.first[axis], fields.first[axis] + fields.counts[axis] as i64];
-    let cells = VtkCells::Grid {
-        origin: fields.origin.to_array(),
-        sides: fields.cell.to_array(),
-        extent: [along(0), along(1)],
-    };
-    let mut file = VtkFile::new(cells, std::iter::empty());
-    add_moment(&mut file, frame);
-    file.add_number("smoothing_width", fields.width);
-    file.add_words("columns", OF_FIELDS.iter());
-    add_facts(&mut file, facts);
-    file.add_column("density", fields.density.iter().copied());
-    for (name, vectors) in [("momentum", &fields.momentum), ("velocity", &fields.velocity)] {
-        file.add_vectors(name, ["x", "y"], vectors.iter().map(DVec2::to_array));
-    }
-    let kinetic = &fields.kinetic_stress;
-    file.add_column("kinetic_stress_xx", kinetic.iter().map(|stress| stress.x_axis.x));
-    file.add_column("kinetic_stress_xy", kinetic.iter().map(|stress| stress.y_axis.x));
-    file.add_column("kinetic_stress_yy", kinetic.iter().map(|stress| stress.y_axis.y));
-    let of_contacts = &fields.contact_stress;
-    file.add_column("contact_stress_xx", of_contacts.iter().map(|stress| stress.x_axis.x));
-    file.add_column("contact_stress_xy", of_contacts.iter().map(|stress| stress.y_axis.x));
-    file.add_column("contact_stress_yx", of_contacts.iter().map(|stress| stress.x_axis.y));
-    file.add_column("contact_stress_yy", of_contacts.iter().map(|stress| stress.y_axis.y));
-    Ok(file.finish("density"))
+/// The lines of a file that have its numbers.
+fn head_of(path: &Path) -> std::io::Result<String> {
+    let mut head = Vec::new();
+    File::open(path)?.take(LONGEST_HEAD).read_to_end(&mut head)?;
+    Ok(String::from_utf8_lossy(&head).into_owned())
+}
+
+/// The number of that name.
+fn number_in<'a>(head: &'a str, name: &str) -> Option<&'a str> {
+    let (_, rest) = head.split_once(&format!("Name=\"{name}\""))?;
+    Some(rest.split_once('>')?.1.split_once('<')?.0)
 }
 
 /// Step and time, s, of the frame that a file has.
 fn moment_of(path: &Path) -> Result<(u64, f64)> {
-    let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(LONGEST_HEAD).read_to_end(&mut head));
-    read.map_err(|error| Error::file(path, error))?;
-    let head = String::from_utf8_lossy(&head);
-    let number = |name: &str| {
-        let (_, rest) = head.split_once(&format!("Name=\"{name}\""))?;
-        let (number, _) = rest.split_once('>')?.1.split_once('<')?;
-        Some(number.to_owned())
-    };
-    let step = number(STEP).and_then(|number| number.parse().ok());
-    let time_secs = number(TIME).and_then(|number| number.parse().ok());
+    let head = head_of(path).map_err(|error| Error::file(path, error))?;
+    let step = number_in(&head, STEP).and_then(|number| number.parse().ok());
+    let time_secs = number_in(&head, TIME).and_then(|number| number.parse().ok());
     step.zip(time_secs).ok_or_else(|| {
         Error::file(path, format!("says no {STEP} and {TIME}, but must be a file that slump wrote"))
     })
@@ -405,11 +389,15 @@ struct PvdSeries {
 }
 
 impl PvdSeries {
-    /// A series of files of the folder that it lies in, each with its time, s.
+    /// A series of files of the folder that it lies in, each with its time, s: the same as one that grew file by file.
     fn of(path: PathBuf, files: &[(f64, String)]) -> Result<Self> {
         let entries: Vec<u8> =
             files.iter().flat_map(|(time_secs, name)| entry(*time_secs, name)).collect();
-        Self::write_anew(path, &entries, (2 * files.len()).max(FIRST_SLOTS))
+        let mut slots = FIRST_SLOTS;
+        while slots < files.len() {
+            slots *= 2;
+        }
+        Self::write_anew(path, &entries, slots)
     }
 
     /// Adds the file of a time, s, which lies in the series' folder.

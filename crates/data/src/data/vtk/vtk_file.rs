@@ -6,6 +6,9 @@
 
 use std::fmt::Write as _;
 
+/// What files end with.
+pub(super) const END: &str = "\n  </AppendedData>\n</VTKFile>\n";
+
 /// A number as such files have it.
 pub(super) trait Scalar: Copy {
     const TYPE: &'static str;
@@ -229,7 +232,7 @@ fn whole_file(kind: &str, body: &str, appended: &[u8]) -> Vec<u8> {
          {body}  \
          <AppendedData encoding=\"raw\">\n   _"
     );
-    [head.as_bytes(), appended, b"\n  </AppendedData>\n</VTKFile>\n"].concat()
+    [head.as_bytes(), appended, END.as_bytes()].concat()
 }
 
 /// A vector of the plane as VTK has it.
