@@ -77,6 +77,20 @@ fn bodies_and_lengths_outside_their_range_are_named() {
         check(spoil, &is("fixed_discs[0].radius", "m"));
     }
     check(|s| s.grains.clear(), "grains is 0, but must be at least one disc");
+    // Lengths in other units than metres.
+    for (factor, expected) in [
+        (1e-3, ", a hundredth of the mean diameter of the grains"),
+        (1e3, "100 times the diameter of the largest grain"),
+    ] {
+        let mut scene = good();
+        scene.mean_diameter *= factor;
+        let said = refused(&scene);
+        assert!(said.starts_with("mean_diameter is ") && said.ends_with(expected), "{said}");
+        let mut scene = good();
+        scene.grains.iter_mut().for_each(|grain| grain.radius /= factor);
+        let said = refused(&scene);
+        assert!(said.starts_with("mean_diameter is ") && said.ends_with(expected), "{said}");
+    }
     for spoil in [
         |grain: &mut Grain| grain.position.x = f64::NAN,
         |grain: &mut Grain| grain.velocity.y = f64::INFINITY,
@@ -118,6 +132,10 @@ fn a_line_scene_off_its_line_is_refused() {
     };
     bad(|s| s.grains[0].position.y = 1e-9, "grains[0] is ");
     bad(|s| s.grains[0].velocity.y = 1.0, "grains[0] is ");
+    bad(
+        |s| s.grains[0].angular_velocity = 1.0,
+        "grains[0].angular_velocity is 1, but must be 0 unless",
+    );
     bad(|s| s.fixed_discs[0].position.y = -1.0, "fixed_discs[0] is ");
     let segment = |s: &mut Scene| {
         s.boundaries = vec![Boundary::Segment { from: DVec2::X, to: 2.0 * DVec2::X }];

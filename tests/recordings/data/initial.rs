@@ -147,6 +147,27 @@ fn scene_files_take_grains_out_of_recordings() {
 }
 
 #[test]
+fn fixed_discs_of_a_file_are_those_of_the_scene_or_refused() {
+    let folder = folder();
+    let moments = recorded_pile(&folder.path().join("data"));
+    let mut scene = scene("pile");
+    scene.source = Some(slump::scene::GrainSource::Data { path: "data".into(), step: None });
+    scene.grains.clear();
+    let path = folder.path().join("scene.toml");
+    let mut read_with = |fixed_discs: &[Disc]| {
+        scene.fixed_discs = fixed_discs.to_vec();
+        write(&path, slump::config::scene_to_toml(&scene).expect("TOML"));
+        slump::config::read_scene(&path).map_err(|error| error.to_string())
+    };
+    let recorded = moments[0].surroundings.fixed_discs.clone();
+    for listed in [&recorded[..], &[]] {
+        assert_eq!(read_with(listed).expect("a scene").fixed_discs, recorded);
+    }
+    let said = read_with(&recorded[1..]).expect_err("others");
+    assert!(said.contains("data: has ") && said.contains("leave fixed_discs out of"), "{said}");
+}
+
+#[test]
 fn rows_in_any_order_are_put_in_that_of_their_ids() {
     let folder = folder();
     recorded_pile(folder.path());
@@ -198,6 +219,24 @@ fn a_step_that_is_not_there_is_told_of_with_those_that_are() {
     assert!(said.starts_with("initial-step is 7, but must be left out, since"), "{said}");
     let said = refusal(&["--initial-step", "7", "--data", "no"]);
     assert_eq!(said, "initial-step is 7, but must be left out where no initial grains are given");
+}
+
+#[test]
+fn grains_of_another_scene_start_no_pile_unless_one_is_asked_for() {
+    let folder = folder();
+    recorded(folder.path(), FormatName::ALL, &scene("drum"), 2, 1);
+    for source in sources(folder.path()) {
+        let said = refusal(&["--data", "no", "--initial", text(&source)]);
+        let expected = "is of the scene drum, but must be of a pile, which would not have its boundaries, \
+                        mean_diameter, motions: start from a saved run (--save)";
+        assert!(said.contains(expected), "{said}");
+        succeed(slump("scene --scene pile --initial").arg(source).stdout(Stdio::null()));
+    }
+    let said = refusal(&["--data", "no", "--scene", "drum", "--initial", text(folder.path())]);
+    assert!(
+        said.contains("must be pile where initial grains are given; a saved run (--save)"),
+        "{said}"
+    );
 }
 
 #[test]

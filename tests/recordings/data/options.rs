@@ -137,8 +137,14 @@ fn what_is_asked_wrongly_is_refused_before_anything_is_written() {
     assert_eq!(said, "data-every is given, but must be given with --data DIR");
     let said = refused(&["--frames", text(&out), "--data-format", "csv"]);
     assert_eq!(said, "data-format is given, but must be given with --data DIR");
-    let said = refused(&["--overwrite", "--gif", text(&folder.path().join("a.gif"))]);
-    assert!(said.starts_with("overwrite is given, but must be"), "{said}");
+    let data = ["--data", text(&out), "--data-every", "0.01"];
+    for option in ["--size 64x36", "--fps 10", "--show forces", "--colour speed", "--theme dark"] {
+        let words: Vec<&str> = option.split(' ').collect();
+        let name = words[0].trim_start_matches('-');
+        let said = refused(&[&data[..], &words].concat());
+        let expected = "is given, but must be left out, since no pictures are asked for (";
+        assert!(said.starts_with(&format!("{name} {expected}")), "{said}");
+    }
     let said = refused(&[]);
     assert!(said.starts_with("frames is missing") && said.contains("--data DIR"), "{said}");
     assert!(!out.exists());

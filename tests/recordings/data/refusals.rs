@@ -60,7 +60,7 @@ const RADII: Column<'static> = Column::Numbers("radius", &[0.002, 0.002, 0.0025]
 fn parquet_of_others_is_read() {
     let folder = folder();
     let path = folder.path().join("discs.parquet");
-    write_columns(&path, &[RADII, Column::Words("colour", &["a", "b", "c"]), YS, XS]);
+    write_columns(&path, &[RADII, Column::Words("kind", &["grain", "grain", "grain"]), YS, XS]);
     let found = read_grains(&path, None).expect("discs");
     assert_eq!(found.grains.len(), 3);
     assert_eq!(found.grains[2].radius, 0.0025);
@@ -84,6 +84,10 @@ fn parquet_that_is_no_state_is_told_of_by_row_and_column() {
         assert_eq!(said, format!("{}: {expected}", path.display()));
     };
     check(&[XS, YS], "the columns are x, y, but must be such that x, y and radius are there");
+    let unknown = [XS, YS, RADII, Column::Words("colour", &["a", "b", "c"])];
+    write_columns(&path, &unknown);
+    let said = refusal(&["--initial", text(&path), "--data", "no"]);
+    assert!(said.contains("a column is colour, but must be one of step, time, id, x, y"), "{said}");
     check(
         &[Column::Numbers("x", &[0.0, f64::NAN, 1.0]), YS, RADII],
         "row 2: x is NaN, but must be finite",
@@ -147,6 +151,77 @@ fn text_that_is_no_state_is_told_of_by_line() {
     check("x,y,radius,x\n0,0.1,1,2\n", "the header line names x twice, but must name it once");
     check("x,y,radius\n0,0.1\n", "line 2: has 2 columns, but must have 3");
     check("step,x,y,radius\n", "holds no disc, but must hold at least one");
+}
+
+/// A mass that the scene does not have would change the physics without a word.
+#[test]
+fn masses_that_the_scene_does_not_have_are_refused_in_every_format() {
+    let folder = folder();
+    let [path, columns] = ["discs.csv", "discs.parquet"].map(|name| folder.path().join(name));
+    let check = |path: &Path, place: &str, expected: &str| {
+        let said = refusal(&["--initial", text(path), "--data", "no"]);
+        let expected = format!("{}: {place}{expected}", path.display());
+        assert!(said.starts_with(&expected) && said.contains("areal_density"), "{said}");
+    };
+    write(&path, "x,y,radius,mass\n0,0.0075,0.0025,1e-5\n0,0.0125,0.0025,1e-2\n");
+    let another = "mass is 0.01 kg, but must be left out or 1.000000e-5, as the first grain has";
+    check(&path, "line 3: ", another);
+    write_columns(&columns, &[XS, YS, RADII, Column::Numbers("mass", &[1e-5, 1e-2, 1e-2])]);
+    check(&columns, "row 2: ", another);
+    // One density, and not that of the scene.
+    write(&path, "x,y,radius,mass\n0,0.0075,0.0025,4.908738521e-2\n");
+    check(&path, "", "mass is 2.500000e3 kg per m² of a disc, but must be left out or that of");
+    for mass in ["0", "-1", "inf"] {
+        write(&path, format!("x,y,radius,mass\n0,0.0075,0.0025,{mass}\n"));
+        check(
+            &path,
+            "line 2: ",
+            &format!("mass is {mass} kg, but must be left out or finite and > 0"),
+        );
+    }
+    // Masses of the scene are read; fixed discs have none.
+    let mass = std::f64::consts::PI * 0.0025f64.powi(2);
+    let table = format!("x,y,radius,kind,mass\n0,0.0075,0.0025,grain,{mass}\n0,0,0.0025,fixed,\n");
+    write(&path, &table);
+    assert_eq!(read_grains(&path, None).expect("discs").fixed_discs.len(), 1);
+    succeed(slump("scene --initial").arg(&path).stdout(Stdio::null()));
+    // A scene file that has the density of the file's discs takes them, and no other.
+    let mut scene = scene("pile");
+    scene.grains.clear();
+    scene.source = Some(slump::scene::GrainSource::Csv { path: "discs.csv".into() });
+    let file = folder.path().join("scene.toml");
+    write(&path, "x,y,radius,mass\n0,0.0075,0.0025,4.908738521e-2\n");
+    for (areal_density, is_read) in [(2500.0, true), (1.0, false)] {
+        scene.areal_density = areal_density;
+        write(&file, slump::config::scene_to_toml(&scene).expect("TOML"));
+        assert_eq!(slump::config::read_scene(&file).is_ok(), is_read, "{areal_density}");
+    }
+}
+
+/// As pandas and numpy write tables by default, and as spreadsheets do.
+#[test]
+fn a_table_of_another_program_is_refused_with_the_way_to_mend_it() {
+    let folder = folder();
+    let path = folder.path().join("discs.csv");
+    for (table, expected) in [
+        (
+            ",x,y,radius\n0,0,0.1,1\n",
+            "has no name, but must have one; if it counts rows, leave it out",
+        ),
+        (
+            "# x,y,radius\n0.0,1e-1,1.0\n",
+            "the header line is '0.0,1e-1,1.0', but must be one that names",
+        ),
+        ("# x,y,radius\n0.0,1e-1,1.0\n", "numpy.savetxt writes it without '# ' if comments=''"),
+        ("x;y;radius\n0;0.1;1\n", "the header line is 'x;y;radius', but must be one that names"),
+        ("x;y;radius\n0;0.1;1\n", "with commas between them"),
+        ("x y radius\n0 0.1 1\n", "with commas between them"),
+        ("x\ty\tradius\n0\t0.1\t1\n", "with commas between them"),
+    ] {
+        write(&path, table);
+        let said = refusal(&["--initial", text(&path), "--data", "no"]);
+        assert!(said.contains(expected), "{said}");
+    }
 }
 
 #[test]

@@ -118,6 +118,10 @@ fn one() -> f64 {
 /// ten-thousandth of one, and soon to where others are as well.
 const FARTHEST_IN_RADII: f64 = 1e15;
 
+/// Most mean diameters of a scene that the mean of its grains measures. More are a mistake of units: grains in millimetres.
+/// Less: a scene cannot take one of several sizes for its unit of length.
+const MOST_DIAMETERS_OF_MEAN: f64 = 100.0;
+
 /// Names are put together where there is something to tell: a study asks this of every disc of every run.
 fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
     if value > 0.0 && value.is_finite() {
@@ -213,6 +217,20 @@ impl Scene {
                 return Err(Error::value(format!("grains[{index}]"), found, "finite throughout"));
             }
             within_reach(format_args!("grains[{index}].position"), grain.position, grain.radius)?;
+            if !self.physics.rotation && grain.angular_velocity != 0.0 {
+                let field = format!("grains[{index}].angular_velocity");
+                let allowed = "0 unless physics.rotation is true";
+                return Err(Error::value(field, grain.angular_velocity, allowed));
+            }
+        }
+        let mean = 2.0 * self.grains.iter().map(|grain| grain.radius).sum::<f64>()
+            / self.grains.len() as f64;
+        // `reach_in` has the other end: the largest grain.
+        let least = mean / MOST_DIAMETERS_OF_MEAN;
+        if self.mean_diameter < least {
+            let allowed =
+                format!("at least {least} m, a hundredth of the mean diameter of the grains");
+            return Err(Error::value("mean_diameter", self.mean_diameter, allowed));
         }
         for (index, disc) in self.fixed_discs.iter().enumerate() {
             positive(format_args!("fixed_discs[{index}].radius"), disc.radius, " m")?;

@@ -2,6 +2,7 @@
 
 mod options;
 mod provenance;
+mod recorded_scene;
 mod run_config;
 mod saved_state;
 mod scene_file;

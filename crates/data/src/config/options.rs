@@ -196,7 +196,7 @@ impl<'de> Visitor<'de> for ConfigVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> std::result::Result<Config, A::Error> {
         let mut config = Config::default();
-        let Config { source, stepper, parameters, solver, remedies } = &mut config;
+        let Config { source, stepper, parameters, solver, remedies, .. } = &mut config;
         while let Some(name) = map.next_key::<String>()? {
             if name == Settings::STEPPER.name {
                 *stepper = Some(map.next_value()?);

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::MapAccess;
 
+use super::recorded_scene::check_starts_pile;
 use super::scene_file::{read_unsettled, unsettled};
 use super::{SavedState, parser_of};
-use crate::data::{RecordedGrains, check_not_periodic, read_grains};
+use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
 use crate::scene::{
     Deposition, NewPile, Preset, Scene, SceneInfo, Settling, built_in, cradle_from, pile_of,
@@ -33,6 +34,9 @@ pub struct Config {
     pub solver: SolverChanges,
     /// Remedies for known failures.
     pub remedies: RemedyChanges,
+    /// The folder that relative paths of files are in; the working directory where it is empty. It is not a part of the
+    /// request: a study asks for the same runs in any folder.
+    pub folder: PathBuf,
 }
 
 /// Where a scene comes from, and what of it is not a setting.
@@ -172,6 +176,15 @@ impl Config {
         *self == Self::default()
     }
 
+    /// The names of settings that are given and that a stepper does not read.
+    pub fn unread_by(&self, stepper: Stepper) -> Vec<String> {
+        let given = Self { source: SceneSource::default(), stepper: None, ..self.clone() };
+        // Plain data by names: there is nothing that JSON cannot say.
+        let given = serde_json::to_value(&given).unwrap_or_default();
+        let names = given.as_object().into_iter().flat_map(|given| given.keys());
+        names.filter(|name| !stepper.reads(name)).cloned().collect()
+    }
+
     /// The same with all settings given.
     pub fn with_settings(self, settings: &Settings) -> Self {
         Self {
@@ -243,7 +256,8 @@ impl Config {
     /// As [`Config::without_settling`].
     pub fn scene_of_discs(&self, discs: RecordedGrains) -> Result<Scene> {
         self.check_source()?;
-        self.change(&BaseScene { scene: self.pile_of_recorded(discs)?, new_pile: None })
+        let scene = self.pile_of_recorded("initial".as_ref(), discs)?;
+        self.change(&BaseScene { scene, new_pile: None })
     }
 
     /// The pile that has to be made for this scene, if any.
@@ -265,15 +279,17 @@ impl Config {
         self.check_source()?;
         let SceneSource { initial, initial_step, start, .. } = &self.source;
         let name = self.named();
+        let initial = initial.as_ref().map(|path| self.folder.join(path));
         let (scene, new_pile) =
             if let Some(path) = initial.as_deref().filter(|path| SavedState::is_in(path)) {
                 (self.scene_of_state(path)?, None)
-            } else if let Some(path) = initial {
+            } else if let Some(path) = &initial {
                 self.check_pile_alone("initial grains")?;
-                check_not_periodic(path)?;
-                (self.pile_of_recorded(read_grains(path, *initial_step)?)?, None)
+                let pile = built_in(Self::DEFAULT_SCENE)?;
+                check_starts_pile(path, &pile, self.source.scene.is_some())?;
+                (self.pile_of_recorded(path, read_grains(path, *initial_step)?)?, None)
             } else if name.ends_with(".toml") {
-                read_unsettled(name.as_ref())?
+                read_unsettled(&self.folder.join(name))?
             } else if let (Self::CRADLE, Some(start)) = (name, *start) {
                 (cradle_from(start), None)
             } else {
@@ -284,9 +300,10 @@ impl Config {
 
     /// What of a config its [`Config::base_scene`] hangs on: equal for all that share one.
     pub fn base_scene_key(&self) -> String {
-        let SceneSource { initial, initial_step, box_width, start, .. } = &self.source;
+        let SceneSource { scene, initial, initial_step, box_width, start, .. } = &self.source;
         let box_width = box_width.filter(|_| initial.is_some());
-        format!("{:?}", (self.named(), initial, initial_step, box_width, start))
+        let is_named = scene.is_some();
+        format!("{:?}", (self.named(), is_named, initial, initial_step, box_width, start))
     }
 
     /// The scene of [`Config::without_settling`] where its base scene is at hand.
@@ -329,15 +346,23 @@ impl Config {
     }
 
     fn check_pile_alone(&self, fields: &str) -> Result<()> {
+        let way_out = match self.source.initial {
+            Some(_) => "; a saved run (--save) starts with the scene that it was saved in",
+            None => "",
+        };
         match self.named() {
             Self::DEFAULT_SCENE => Ok(()),
-            name => Err(Error::value("scene", name, format!("pile where {fields} are given"))),
+            name => {
+                Err(Error::value("scene", name, format!("pile where {fields} are given{way_out}")))
+            }
         }
     }
 
-    fn pile_of_recorded(&self, discs: RecordedGrains) -> Result<Scene> {
-        let RecordedGrains { grains, fixed_discs } = discs;
-        let mut pile = pile_of(grains, self.source.new_pile().box_width_in_diameters)?;
+    fn pile_of_recorded(&self, path: &Path, discs: RecordedGrains) -> Result<Scene> {
+        let width = self.source.new_pile().box_width_in_diameters;
+        let mut pile = pile_of(discs.grains.clone(), width)?;
+        discs.check_masses(path, pile.areal_density)?;
+        let RecordedGrains { fixed_discs, .. } = discs;
         if !fixed_discs.is_empty() {
             // The base that the grains lie on, as wide as it was.
             pile.fixed_discs = fixed_discs;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use crate::data::{parse_grains, read_grains};
+use crate::data::{RecordedGrains, parse_grains, read_grains};
 use crate::error::{Error, Result};
 use crate::input::{MOST_OF_TOML, read_text};
 use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
@@ -47,8 +47,8 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
             return Err(Error::value("source", "given", allowed));
         }
         let grains = match source {
-            GrainSource::Csv { path } => read_grains(&folder.join(path), None)?.grains,
-            GrainSource::Data { path, step } => read_grains(&folder.join(path), step)?.grains,
+            GrainSource::Csv { path } => discs_of(&mut scene, &folder.join(path), None)?,
+            GrainSource::Data { path, step } => discs_of(&mut scene, &folder.join(path), step)?,
             GrainSource::NewPile(pile) => {
                 pile.validate()?;
                 let start = start_of(&pile);
@@ -63,6 +63,24 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
     }
     scene.validate()?;
     Ok((scene, new_pile))
+}
+
+/// The grains of a file for a scene, which takes the fixed discs of the file too if it lists none.
+fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Grain>> {
+    let discs = read_grains(path, step)?;
+    discs.check_masses(path, scene.areal_density)?;
+    let RecordedGrains { grains, fixed_discs, .. } = discs;
+    if scene.fixed_discs.is_empty() {
+        scene.fixed_discs = fixed_discs;
+    } else if !fixed_discs.is_empty() && fixed_discs != scene.fixed_discs {
+        let reason = format!(
+            "has {} fixed discs that are not those of the scene, but must have none or the same: leave fixed_discs \
+             out of the scene to take those of the file",
+            fixed_discs.len()
+        );
+        return Err(Error::file(path, reason));
+    }
+    Ok(grains)
 }
 
 /// The TOML file that says what a scene says.

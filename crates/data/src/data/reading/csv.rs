@@ -8,8 +8,8 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::{
-    COMMENT, DiscRow, NUMBERS, RecordedGrains, discs_of_rows, empty_grains, has_needed,
-    no_such_step,
+    COMMENT, DiscRow, LEFT_OUT, NUMBERS, RecordedGrains, discs_of_rows, has_needed, known_names,
+    no_such_step, unknown_of,
 };
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
@@ -90,15 +90,21 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
         if !has_needed(&all) {
             let found: String = all.join(",").chars().take(MOST_SHOWN).collect();
             return refuse(format!(
-                "the header line is '{found}', but must be one that names x, y and radius"
+                "the header line is '{found}', but must be one that names x, y and radius{}",
+                way_out(&all)
             ));
         }
-        let known = empty_grains();
-        if let Some(unknown) = all.iter().find(|name| known.column(name).is_none()) {
-            let known: Vec<_> = known.columns.iter().map(|column| column.name).collect();
+        if all[0].is_empty() {
+            return refuse(
+                "the first column of the header line has no name, but must have one; if it counts rows, \
+                 leave it out (in pandas, to_csv(..., index=False))"
+                    .to_owned(),
+            );
+        }
+        if let Some(unknown) = unknown_of(&all) {
             return refuse(format!(
-                "the header line names {unknown}, but must name nothing but {}",
-                known.join(", ")
+                "the header line names '{unknown}', but must name nothing but {}",
+                known_names()
             ));
         }
         let is_twice = |(place, name): &(usize, &String)| all[..*place].contains(name);
@@ -115,10 +121,14 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
             let reason = format!("has {} columns, but must have {}", record.len(), places.all);
             return Err(self.refuse(record, &reason));
         }
-        let mut numbers = [0.0; NUMBERS.len()];
+        let mut numbers = LEFT_OUT;
         for ((number, place), name) in numbers.iter_mut().zip(places.numbers).zip(NUMBERS) {
             let Some(place) = place else { continue };
             let said = record.get(place).unwrap_or_default();
+            // Fixed discs of a recording have no mass.
+            if name == "mass" && said.is_empty() {
+                continue;
+            }
             *number = said.parse().map_err(|_| {
                 self.refuse(record, &format!("{name}: '{said}' is none, but must be a number"))
             })?;
@@ -155,6 +165,20 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
             start += line.len() as u64 + 1;
         }
         "the last line".to_owned()
+    }
+}
+
+/// How to mend a header line that names none of the columns, for messages.
+fn way_out(found: &[String]) -> &'static str {
+    let all = |is_so: &dyn Fn(&str) -> bool| !found.is_empty() && found.iter().all(|it| is_so(it));
+    if all(&|it| it.parse::<f64>().is_ok()) {
+        ", which is no comment: numpy.savetxt writes it without '# ' if comments='' is given"
+    } else if let [only] = found
+        && only.contains([';', '\t', ' '])
+    {
+        " with commas between them: neither semicolons nor blanks separate columns"
+    } else {
+        ""
     }
 }
 

@@ -35,8 +35,13 @@ const LONGEST_BEGINNING: u64 = 8;
 
 /// Columns without which there are no discs.
 const NEEDED: [&str; 3] = ["x", "y", "radius"];
-/// The columns of numbers that are read. Those that are left out are 0.
-const NUMBERS: [&str; 6] = ["x", "y", "radius", "vx", "vy", "omega"];
+/// The columns of numbers that are read, mass last.
+const NUMBERS: [&str; 7] = ["x", "y", "radius", "vx", "vy", "omega", "mass"];
+/// The numbers of columns that are left out. A mass that is NaN is not given.
+const LEFT_OUT: [f64; NUMBERS.len()] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN];
+/// Relative difference of masses that counts as rounding. Smaller: masses that were written with few digits are
+/// refused; larger: a scene computes with other masses than its file says.
+const SAME_MASS: f64 = 1e-3;
 /// Steps that a message lists.
 const MOST_LISTED: usize = 8;
 
@@ -47,11 +52,34 @@ pub struct RecordedGrains {
     pub grains: Vec<Grain>,
     /// Those that do not.
     pub fixed_discs: Vec<Disc>,
+    /// The mass of each grain over its area, kg/m², if masses are given: all grains have the same.
+    pub areal_density: Option<f64>,
 }
 
 impl RecordedGrains {
     /// The columns of numbers that they are made of. Beside them the columns `id` and `kind` are read.
     pub const NUMBERS: [&str; NUMBERS.len()] = NUMBERS;
+
+    /// Refuses grains that a file gives other masses than a scene of that density (kg/m²) has. `path` is for messages.
+    ///
+    /// # Errors
+    /// Names both densities.
+    pub fn check_masses(&self, path: &Path, areal_density: f64) -> Result<()> {
+        let Some(found) = self.areal_density else { return Ok(()) };
+        if is_near(found, areal_density) {
+            return Ok(());
+        }
+        let reason = format!(
+            "mass is {found:.6e} kg per m² of a disc, but must be left out or that of the scene, which has an \
+             areal_density of {areal_density} kg/m²: a scene file can have another"
+        );
+        Err(Error::file(path, reason))
+    }
+}
+
+/// True if two masses or densities differ by rounding alone. NaN is near nothing.
+fn is_near(one: f64, other: f64) -> bool {
+    (one - other).abs() <= SAME_MASS * other.abs()
 }
 
 /// Reads the grains of a file, or of a recording's folder, as CSV or Parquet. Where it has several moments, the last
@@ -151,13 +179,7 @@ fn read_parts(path: &Path, _: &[(u64, PathBuf)], _: Option<u64>) -> Result<Recor
 pub fn grains_of(what: &Path, columns: &[(String, Values)]) -> Result<RecordedGrains> {
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     check_names(what, &names)?;
-    let known = empty_grains();
     let refuse = |reason: String| Error::file(what, reason);
-    if let Some(unknown) = names.iter().find(|name| known.column(name).is_none()) {
-        let known: Vec<_> = known.columns.iter().map(|column| column.name).collect();
-        let known = known.join(", ");
-        return Err(refuse(format!("a column is {unknown}, but must be one of {known}")));
-    }
     let (first, values) = &columns[0];
     let rows = values.len();
     for (name, values) in columns {
@@ -183,7 +205,9 @@ pub fn grains_of(what: &Path, columns: &[(String, Values)]) -> Result<RecordedGr
         place: at as u64,
         id: ids.map(|ids| ids[at]),
         kind: kinds.and_then(|kinds| kinds.word(at)).map(str::to_owned),
-        numbers: numbers.map(|numbers| numbers.map_or(0.0, |numbers| numbers.number(at))),
+        numbers: std::array::from_fn(|place| {
+            numbers[place].map_or(LEFT_OUT[place], |numbers| numbers.number(at))
+        }),
     };
     let place = |row| (what.to_owned(), format!("row {row}"));
     discs_of_rows(what, (0..rows).map(row).collect(), place)
@@ -206,15 +230,28 @@ fn has_needed(names: &[String]) -> bool {
     NEEDED.iter().all(|needed| names.iter().any(|name| name == needed))
 }
 
-/// Refuses a file that lacks a column.
+/// Refuses a file that lacks a column, or has one that nothing is known of.
 fn check_names(path: &Path, names: &[String]) -> Result<()> {
-    if has_needed(names) {
-        return Ok(());
+    if !has_needed(names) {
+        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let reason =
+            format!("the columns are {names}, but must be such that x, y and radius are there");
+        return Err(Error::file(path, reason));
     }
-    let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-    let reason =
-        format!("the columns are {names}, but must be such that x, y and radius are there");
+    let Some(unknown) = unknown_of(names) else { return Ok(()) };
+    let reason = format!("a column is {unknown}, but must be one of {}", known_names());
     Err(Error::file(path, reason))
+}
+
+/// The first name that no column of grains has.
+fn unknown_of(names: &[String]) -> Option<&String> {
+    let known = empty_grains();
+    names.iter().find(|name| known.column(name).is_none())
+}
+
+/// The names of all columns of grains.
+fn known_names() -> String {
+    empty_grains().columns.iter().map(|column| column.name).collect::<Vec<_>>().join(", ")
 }
 
 /// That a file has no frame of a step, but those of `known`, rising.
@@ -242,6 +279,7 @@ fn discs_of_rows(
 ) -> Result<RecordedGrains> {
     let (mut grains, mut fixed_discs) = (Vec::new(), Vec::new());
     let mut by_id = HashMap::new();
+    let mut areal_density = None;
     for row in rows {
         let refuse = |reason: String| {
             let (path, place) = place(row.place);
@@ -261,18 +299,38 @@ fn discs_of_rows(
         if kind == KINDS[LOST] {
             continue;
         }
-        let [x, y, radius, vx, vy, omega] = row.numbers;
+        let [x, y, radius, vx, vy, omega, mass] = row.numbers;
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(refuse(format!("radius is {radius}, but must be finite and > 0")));
         }
         let mut numbers = NUMBERS.iter().zip(row.numbers);
-        if let Some((name, value)) = numbers.find(|(_, value)| !value.is_finite()) {
+        if let Some((name, value)) =
+            numbers.find(|(name, value)| **name != "mass" && !value.is_finite())
+        {
             return Err(refuse(format!("{name} is {value}, but must be finite")));
         }
         let position = DVec2::new(x, y);
         if kind == KINDS[FIXED] {
             fixed_discs.push((row.id, Disc { position, radius }));
         } else {
+            if !mass.is_nan() {
+                let area = std::f64::consts::PI * radius * radius;
+                let density = *areal_density.get_or_insert(mass / area);
+                if !(is_near(mass, density * area) && mass > 0.0 && mass.is_finite()) {
+                    let allowed = if density > 0.0 && density.is_finite() {
+                        format!(
+                            "{:.6e}, as the first grain has {density:.6e} kg/m²",
+                            density * area
+                        )
+                    } else {
+                        "finite and > 0".to_owned()
+                    };
+                    return Err(refuse(format!(
+                        "mass is {mass} kg, but must be left out or {allowed}: all grains of a scene have the \
+                         same areal_density"
+                    )));
+                }
+            }
             let (velocity, angular_velocity) = (DVec2::new(vx, vy), omega);
             let grain = Grain { velocity, angular_velocity, ..Grain::at_rest(position, radius) };
             grains.push((row.id, grain));
@@ -281,7 +339,8 @@ fn discs_of_rows(
     if grains.is_empty() {
         return Err(Error::file(path, "holds no disc, but must hold at least one"));
     }
-    Ok(RecordedGrains { grains: by_their_ids(grains), fixed_discs: by_their_ids(fixed_discs) })
+    let (grains, fixed_discs) = (by_their_ids(grains), by_their_ids(fixed_discs));
+    Ok(RecordedGrains { grains, fixed_discs, areal_density })
 }
 
 /// In the order of the ids, or as they came where there are none.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{DiscRow, NUMBERS, RecordedGrains, check_names, discs_of_rows, no_such_step};
+use super::{DiscRow, LEFT_OUT, NUMBERS, RecordedGrains, check_names, discs_of_rows, no_such_step};
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
@@ -75,7 +75,7 @@ impl ParquetFile {
             place: first_place + row as u64,
             id: ids.as_ref().map(|ids| ids[row]),
             kind: kinds.as_ref().and_then(|kinds| kinds[row].clone()),
-            numbers: [0.0; NUMBERS.len()],
+            numbers: LEFT_OUT,
         };
         let mut rows: Vec<DiscRow> = chosen.iter().map(row).collect();
         for (place, name) in NUMBERS.iter().enumerate() {

@@ -1,0 +1,52 @@
+//! Recordings whose grains start a pile: a pile has walls, gravity and sizes of its own, whatever their scene had.
+
+use std::path::Path;
+
+use super::scene_facts;
+use crate::data::facts_of_recording;
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+/// Beginnings of the names of facts that a pile does not take from a recording. Settings are no part of them: those are
+/// asked for with every run.
+const OF_THE_PILE: [&str; 8] = [
+    "areal_density",
+    "boundaries",
+    "gap_tolerance",
+    "gravity",
+    "mean_diameter",
+    "motions",
+    "periodic.",
+    "physics.",
+];
+
+/// Fails where grains are those of a recording, or of a table of it, whose scene has borders that wrap, or, unless a pile
+/// `is_asked_for` by its name, anything else that the `pile` lacks.
+pub(super) fn check_starts_pile(path: &Path, pile: &Scene, is_asked_for: bool) -> Result<()> {
+    let Some(recorded) = facts_of_recording(path) else { return Ok(()) };
+    if recorded.keys().any(|name| name.starts_with("periodic.")) {
+        let reason = "is of a scene with periodic borders, but must be of one without, as the pile \
+                      that it starts has none: go on with such a run by --restart";
+        return Err(Error::file(path, reason));
+    }
+    if is_asked_for {
+        return Ok(());
+    }
+    let of_pile = scene_facts(pile)?.facts;
+    let said_of_pile = |name: &str| of_pile.iter().find(|(known, _)| known == name);
+    let lacks = |(name, said): &(&String, &serde_json::Value)| {
+        let is_of_scene = OF_THE_PILE.iter().any(|beginning| name.starts_with(beginning));
+        is_of_scene && said_of_pile(name).is_none_or(|(_, of_pile)| said.as_str() != Some(of_pile))
+    };
+    let names: Vec<&str> = recorded.iter().filter(lacks).map(|(name, _)| name.as_str()).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let reason = format!(
+        "is of the scene {}, but must be of a pile, which would not have its {}: start from a saved run (--save) to keep \
+         them, or give --scene pile to take the grains alone",
+        recorded.get("name").and_then(|name| name.as_str()).unwrap_or("it was recorded in"),
+        names.join(", ")
+    );
+    Err(Error::file(path, reason))
+}
