@@ -122,6 +122,18 @@ fn too_large() -> EncodingError {
         .into()
 }
 
+/// Refuses a name of another format than the one that is written there. A device or a pipe has any name.
+pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str) -> Result<()> {
+    let is_special = path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir());
+    let has_ending = path.extension().is_some_and(|it| it.eq_ignore_ascii_case(ending));
+    if has_ending || is_special {
+        return Ok(());
+    }
+    let allowed =
+        format!("a name that ends with .{ending}, as the file is written in that format: {other}");
+    Err(Error::value(option, path.display(), allowed))
+}
+
 /// A video in MP4 that is there once it is finished.
 pub(crate) struct Video {
     path: PathBuf,

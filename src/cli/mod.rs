@@ -18,7 +18,7 @@ use crate::error::{Error, Result, check};
 use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use crate::output::{
-    Progress, Signal, caught_signal, check_file, heed_signals, ignore_file_size_signal,
+    Progress, Signal, caught_signal, check_file, check_new_file, heed_signals, ignore_file_size_signal,
     lost_stdout, note_line, note_printed, print_line, print_text, resolved, warn_of_steps,
     write_file,
 };
@@ -71,6 +71,9 @@ enum CliCommand {
         /// The file to write
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
+        /// Replace the file if it exists; without this option an existing file is refused
+        #[arg(long)]
+        overwrite: bool,
     },
     /// List the built-in scenes, steppers, methods and models of friction
     List {
@@ -169,8 +172,9 @@ fn run(cli: Cli) -> Result<()> {
         Some(CliCommand::Run { config, headless }) => {
             crate::headless::run(&config, &HeadlessOptions { headless: true, ..*headless })
         }
-        Some(CliCommand::Generate { grains, box_width, seed, deposition, out }) => {
+        Some(CliCommand::Generate { grains, box_width, seed, deposition, out, overwrite }) => {
             let box_width_in_diameters = box_width;
+            check_new_file("out", &out, overwrite)?;
             generate(&NewPile { grains, box_width_in_diameters, seed, deposition }, &out)
         }
         Some(CliCommand::List { what }) => {
@@ -254,7 +258,6 @@ impl Listed {
 
 /// Puts discs into a box and writes them to a file once they are at rest.
 fn generate(pile: &NewPile, out: &Path) -> Result<()> {
-    check_file("out", out)?;
     let progress = Progress::new("settling", 100);
     let settled = deposit(pile, |Settling { time_secs, limit_secs, .. }| {
         progress.set((100.0 * time_secs / limit_secs) as u64);
@@ -297,6 +300,9 @@ enum ProblemCommand {
         /// The file to write (JSON)
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
+        /// Replace the file if it exists; without this option an existing file is refused
+        #[arg(long)]
+        overwrite: bool,
     },
     /// Solve a problem file, or a text file of Siconos', and say how well and how fast
     Solve {
@@ -320,14 +326,21 @@ enum ProblemCommand {
         /// Write velocities and impulses to this file (JSON)
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
+        /// Replace that file if it exists; without this option an existing file is refused
+        #[arg(long, requires = "out")]
+        overwrite: bool,
     },
 }
 
 impl ProblemCommand {
     fn run(self) -> Result<()> {
         match self {
-            Self::Dump { config, at, out } => {
-                check_file("out", &out)?;
+            Self::Dump { config, at, out, overwrite } => {
+                if let Some(secs) = config.source.duration {
+                    let allowed = "left out, since --at says how long the scene is run";
+                    return Err(Error::value("duration", secs, allowed));
+                }
+                check_new_file("out", &out, overwrite)?;
                 let scene = settled(&config)?;
                 scene.parameters.check_steps("at", at)?;
                 warn_of_steps(scene.parameters.steps_in(at));
@@ -341,14 +354,23 @@ impl ProblemCommand {
                 print_line(format_args!("{} contacts in {}", file.nc, out.display()));
                 Ok(())
             }
-            Self::Solve { file, method, tolerance, max_sweeps, repeat, without_bodies, out } => {
+            Self::Solve {
+                file,
+                method,
+                tolerance,
+                max_sweeps,
+                repeat,
+                without_bodies,
+                out,
+                overwrite,
+            } => {
                 if let Some(out) = &out {
-                    check_file("out", out)?;
                     let place = resolved(out)?;
                     if place.is_some() && place == resolved(&file)? {
                         let allowed = "another file than that of the problem";
                         return Err(Error::value("out", out.display(), allowed));
                     }
+                    check_new_file("out", out, overwrite)?;
                 }
                 let mut problem = ProblemFile::read(&file)?;
                 if without_bodies {

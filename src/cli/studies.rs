@@ -9,7 +9,8 @@ use crate::config::{Config, joined};
 use crate::error::{Error, Result};
 use crate::headless::draw_snapshots;
 use crate::output::{
-    Progress, check_file, check_writable, note_line, print_line, print_text, write_file,
+    Progress, check_new_file, check_writable, note_line, print_line, print_text, remove_drafts,
+    write_file,
 };
 use crate::study::chart::{png, svg};
 use crate::study::stability::{
@@ -100,6 +101,9 @@ pub(super) enum StudyCommand {
         /// File for the table alone, as CSV
         #[arg(long, value_name = "FILE")]
         table: Option<PathBuf>,
+        /// Replace that file if it exists; without this option an existing file is refused
+        #[arg(long, requires = "table")]
+        overwrite: bool,
         /// Leave the longest runs out: under a minute, and what the tests compare with
         #[arg(long)]
         quick: bool,
@@ -190,7 +194,10 @@ impl StudyCommand {
                 reproduce(&figures, &out, quick, VERSION, draw_snapshots)
             }
             Self::Chart(options) => chart_speed(&options, VERSION),
-            Self::Stability { scenes, out, table, quick } => {
+            Self::Stability { scenes, out, table, overwrite, quick } => {
+                if let Some(path) = &table {
+                    check_new_file("table", path, overwrite)?;
+                }
                 stability(&scenes, out.as_deref(), table.as_deref(), quick)
             }
             Self::Validate(options) => validate(&options, VERSION),
@@ -263,7 +270,6 @@ fn stability(
     if let Some(folder) = out {
         check_writable("out", folder)?;
     }
-    table_path.map(|path| check_file("table", path)).transpose()?;
     let progress = Progress::new("stability", StabilityTable::count(&challenges, quick) as u64);
     let table = StabilityTable::run(&challenges, quick, || {
         progress.advance(1);
@@ -279,6 +285,7 @@ fn stability(
     if let Some(folder) = out {
         write_file(&folder.join("table.csv"), &table.to_csv()?)?;
         draw_stability(&table, scenes, folder, quick)?;
+        remove_drafts(folder)?;
         print_line(folder.display());
     }
     Ok(())

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use crate::config::{Config, Provenance, asked_time_secs, parser_of, words_of, words_up_to};
 use crate::data::{DataSettings, FormatName};
 use crate::error::{Error, Result};
-use crate::film::{VIDEO_RATES_HZ, VIDEO_SIDES, check_ffmpeg};
+use crate::film::{VIDEO_RATES_HZ, VIDEO_SIDES, check_ending, check_ffmpeg};
 use crate::output::Texts;
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
 use crate::scene::Scene;
@@ -53,7 +53,7 @@ pub(crate) struct HeadlessOptions {
     /// Folder for pictures, observables.csv and manifest.json
     #[arg(long, value_name = "DIR")]
     pub frames: Option<PathBuf>,
-    /// Remove what earlier runs left in the folders; without it such a folder is refused
+    /// Remove what earlier runs left in the folders, and replace files; without it such folders and files are refused
     #[arg(long)]
     pub overwrite: bool,
     /// Size of a picture, pixels [default: 960x540]
@@ -150,20 +150,28 @@ impl HeadlessOptions {
         files.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))).collect()
     }
 
-    /// Fails where nothing is to be written, or there is no folder to overwrite; `has_data` says whether a recording is
-    /// asked for.
-    pub(super) fn check_places(&self, has_data: bool) -> Result<()> {
-        if !self.draws() && self.save.is_none() && !has_data {
+    /// Fails where nothing is to be written, or an option of pictures is given and there are none. `data` is the recording
+    /// that is asked for.
+    pub(super) fn check_places(&self, data: Option<&DataSettings>) -> Result<()> {
+        if self.draws() {
+            return Ok(());
+        }
+        if self.save.is_none() && data.is_none() {
             let allowed = "a folder (--frames out/), or give --gif FILE, --video FILE, --data DIR or \
                            --save FILE";
             return Err(Error::value("frames", "missing", allowed));
         }
-        if self.overwrite && self.frames.is_none() && !has_data {
-            return Err(Error::value(
-                "overwrite",
-                "given",
-                "given with --frames DIR or --data DIR",
-            ));
+        let has_times = data.is_some_and(|data| data.every_secs.is_none());
+        let given = [
+            ("size", self.size.is_some()),
+            ("fps", self.fps.is_some() && !has_times),
+            ("show", !self.show.is_empty()),
+            ("colour", self.colour.is_some()),
+            ("theme", self.theme.is_some()),
+        ];
+        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            let allowed = "left out, since no pictures are asked for (--frames, --gif or --video)";
+            return Err(Error::value(option, "given", allowed));
         }
         Ok(())
     }
@@ -229,7 +237,8 @@ impl HeadlessOptions {
     }
 
     pub(super) fn video_rate_hz(&self) -> Result<f64> {
-        if self.video.is_some() {
+        if let Some(path) = &self.video {
+            check_ending("video", path, "mp4", "--gif makes a GIF")?;
             let PictureSize { width, height } = self.size()?;
             let [least, most] = VIDEO_SIDES;
             let is_side = |side: u32| side.is_multiple_of(2) && (least..=most).contains(&side);

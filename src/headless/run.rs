@@ -8,9 +8,10 @@ use super::folder::{Beginning, Checkpoints, EarlierFiles, Marks, RunFolder, chec
 use super::manifest::Instant;
 use super::writer::{RunWriter, interrupted};
 use crate::config::{Config, SavedState, scene_facts};
-use crate::data::{DataSettings, Recording, RecordingFolder, Times, formats_of};
+use crate::data::{DataSettings, Recording, RecordingFolder, RecordingMark, Times, formats_of};
 use crate::error::{Error, Result};
-use crate::output::{Progress, caught_signal, check_file, note_line, warn_of_steps};
+use crate::film::check_ending;
+use crate::output::{Progress, caught_signal, check_new_file, note_line, warn_of_steps};
 use crate::render::{Renderer, RendererChoice};
 use crate::scene::{Scene, Settling};
 use crate::sim::{Observables, Simulation, Tally};
@@ -28,7 +29,8 @@ pub(super) fn draw(
     let asked = RequestedRun::of(config, options)?;
     let PictureSchedule { times_secs, until_secs } = asked.schedule(config, options)?;
     let data = options.data_settings(asked.scene())?;
-    options.check_places(data.is_some())?;
+    tell_of_unread_settings(config, asked.scene());
+    options.check_places(data.as_ref().map(|(_, settings)| settings))?;
     let choice = if options.draws() { options.renderer } else { RendererChoice::Cpu };
     let renderer = Renderer::new(choice)?;
     renderer.check_size(size.width, size.height)?;
@@ -38,11 +40,21 @@ pub(super) fn draw(
     let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
     let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
     let mut places = options.files();
-    places.iter().try_for_each(|(option, path)| check_file(option, path))?;
+    // A run that is resumed replaces the files that it left when it was stopped.
+    let replaces = options.overwrite || found.is_some();
+    places.iter().try_for_each(|(option, path)| check_new_file(option, path, replaces))?;
     // The folder of pictures may be the same.
     places.extend(data.as_ref().map(|(folder, _)| ("data", &**folder)));
     check_apart(&places, options.frames.as_deref())?;
-    let picture_times_secs = options.picture_times(asked.scene().duration_secs)?;
+    if let Some(gif) = options.gif.as_deref().filter(|path| path.extension().is_some()) {
+        check_ending("gif", gif, "gif", "--video makes MP4")?;
+    }
+    let picture_times_secs = match &data {
+        Some((_, settings)) if settings.every_secs.is_none() => {
+            options.picture_times(asked.scene().duration_secs)?
+        }
+        _ => Vec::new(),
+    };
     let claim = |data| RecordingPlan::claim(data, options.overwrite, found.is_some());
     let recording = data.map(claim).transpose()?;
     let begun = match found {
@@ -53,9 +65,13 @@ pub(super) fn draw(
         })?,
     };
     let goes_on = !begun.marks.went_on_at.is_empty();
+    if let (true, Some(plan)) = (goes_on, &recording) {
+        // Before anything is cut: a run that is refused keeps all that it has.
+        plan.check(begun.state.simulation.observables().step, &begun.marks.recording)?;
+    }
     if let Some(folder) = &folder {
         if goes_on {
-            folder.keep_pictures(&begun.marks.pictures, options.animation())?;
+            folder.keep(&begun.marks, options.animation())?;
         } else {
             folder.clear()?;
         }
@@ -79,7 +95,7 @@ pub(super) fn draw(
         checkpoints.write(&scene, &simulation, &tally, marks.clone())?;
     }
     let start = |plan: RecordingPlan| -> Result<Recording> {
-        let recording = plan.start(&scene, &simulation, &picture_times_secs, marks.frames)?;
+        let recording = plan.start(&scene, &simulation, &picture_times_secs, &marks.recording)?;
         Ok(recording.with_sums(marks.sums.clone()))
     };
     let recording = recording.map(start).transpose()?;
@@ -90,6 +106,15 @@ pub(super) fn draw(
     let run = OnItsWay { simulation, tally, next_picture };
     let recorded = go_on_with(run, &times_secs, until_secs, &mut writer);
     writer.end(recorded)
+}
+
+/// Says on stderr which of the settings that are asked for change nothing.
+fn tell_of_unread_settings(config: &Config, scene: &Scene) {
+    let unread = config.unread_by(scene.stepper);
+    if !unread.is_empty() {
+        let (name, stepper, unread) = (&scene.name, scene.stepper, unread.join(", "));
+        note_line(format_args!("{name}: the stepper {stepper} does not read {unread}"));
+    }
 }
 
 /// The run that the same command left in its folder, if there is one to go on with. Any other files of an
@@ -161,7 +186,12 @@ impl RequestedRun {
         config: &Config,
         options: &HeadlessOptions,
     ) -> Result<PictureSchedule> {
-        let times_secs = options.picture_times(self.scene().duration_secs)?;
+        // Where no picture is asked for, there may be any number of times.
+        let has_times = options.draws() || !options.times.is_empty();
+        let times_secs = match has_times {
+            true => options.picture_times(self.scene().duration_secs)?,
+            false => Vec::new(),
+        };
         // Times alone ask for no more than the last of them.
         let until_secs = match times_secs.last() {
             Some(&last) if !options.times.is_empty() && config.source.duration.is_none() => last,
@@ -270,7 +300,15 @@ impl RecordingPlan {
         Ok(Self { claim, folder, settings })
     }
 
-    /// Starts it, or goes on with its `frames`, at the present state of a run.
+    /// Checks that a run that is resumed finds all that its recording had.
+    ///
+    /// # Errors
+    /// Names what is missing.
+    fn check(&self, step: u64, mark: &RecordingMark) -> Result<()> {
+        Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
+    }
+
+    /// Starts it, or resumes it as `mark` says, at the present state of a run.
     ///
     /// # Errors
     /// Where the folder cannot be written to, or lacks one of them.
@@ -279,7 +317,7 @@ impl RecordingPlan {
         scene: &Scene,
         simulation: &Simulation,
         picture_times: &[f64],
-        frames: u64,
+        mark: &RecordingMark,
     ) -> Result<Recording> {
         let mut about = scene_facts(scene)?;
         let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
@@ -299,7 +337,7 @@ impl RecordingPlan {
         let step = simulation.observables().step;
         let recording = match self.claim {
             Some(claim) => Recording::start_in(claim, &formats, &about)?,
-            None => Recording::go_on(&self.folder, &formats, &about, step, frames)?,
+            None => Recording::go_on(&self.folder, &formats, &about, step, mark)?,
         };
         Ok(recording.at(times, simulation))
     }

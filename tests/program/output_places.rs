@@ -11,7 +11,7 @@ const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/problems/bond_
 
 /// Has a solution written to `out`.
 fn solve_to(out: &Path) -> Output {
-    run(slump("problem solve").arg(PROBLEM).arg("--out").arg(out))
+    run(slump("problem solve --overwrite").arg(PROBLEM).arg("--out").arg(out))
 }
 
 const TINY: &str =
@@ -153,6 +153,61 @@ fn where_nothing_can_be_written_is_told_before_the_work() {
 }
 
 #[test]
+fn a_file_that_is_there_is_kept_unless_it_is_to_be_replaced() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    let run = "run cradle --duration 0.02 --size 64x36 --renderer cpu";
+    for line in [
+        "run cradle --duration 0.02 --save",
+        &format!("{run} --gif"),
+        "generate --grains 3 --box-width 4 --out",
+        "problem dump --scene pile --at 0 --out",
+        &format!("problem solve {PROBLEM} --out"),
+    ] {
+        write(&out, "mine");
+        let option = line.rsplit_once("--").expect("an option").1;
+        let said = sentence(slump(line).arg(&out));
+        let expected = format!(
+            "slump: {option} is {}, but must be a file that is not there yet, unless --overwrite is given to replace it",
+            out.display()
+        );
+        assert_eq!(said, expected);
+        assert_eq!((read(&out).as_str(), names_in(folder.path()).len()), ("mine", 1), "{line}");
+        succeed(slump(line).arg(&out).arg("--overwrite"));
+        let written = bytes(&out);
+        assert!(written.len() > 40, "{line}");
+        // One that holds nothing was made for it.
+        write(&out, "");
+        succeed(slump(line).arg(&out));
+        assert_eq!(bytes(&out).len(), written.len(), "{line}");
+    }
+}
+
+#[test]
+fn a_folder_has_a_name() {
+    let folder = folder();
+    for option in ["--frames", "--data"] {
+        let mut command = slump("run cradle --duration 0.02 --renderer cpu");
+        let said = failure(command.current_dir(folder.path()).args([option, ""]));
+        assert!(said.contains("must"), "{said}");
+    }
+    assert_eq!(names_in(folder.path()), [""; 0]);
+}
+
+#[test]
+fn a_run_that_saves_its_state_alone_has_any_number_of_pictures() {
+    let folder = folder();
+    let saved = folder.path().join("saved.slump");
+    // Pictures at 25 a second would be more than there may be.
+    let line = "run collision --dt 100 --duration 10000 --save";
+    succeed(slump(line).arg(&saved));
+    assert!(saved.exists());
+    let said =
+        sentence(slump(line).arg(&saved).args(["--overwrite", "--frames"]).arg(folder.path()));
+    assert!(said.contains("duration is 10000, but must be such that its pictures"), "{said}");
+}
+
+#[test]
 fn outputs_that_would_take_each_others_place_are_refused_before_the_work() {
     let folder = folder();
     let out = folder.path().join("out");
@@ -167,10 +222,6 @@ fn outputs_that_would_take_each_others_place_are_refused_before_the_work() {
     for (files, reason) in [
         ([["--gif", "out/a"], ["--save", "out/a"]], "save is out/a, but must be another path than"),
         ([["--gif", "out/a"], ["--save", "link/../link/a"]], "save is link/../link/a, but must be"),
-        (
-            [["--data", "out/a"], ["--save", "out/a"]],
-            "data is out/a, but must be another path than",
-        ),
         ([["--frames", "out"], ["--save", "link/checkpoint.slump"]], "does not write itself"),
         ([["--frames", "out"], ["--gif", "out/manifest.json"]], "does not write itself"),
         ([["--frames", "out"], ["--gif", "out/frame_00000.png"]], "does not write itself"),
@@ -179,6 +230,9 @@ fn outputs_that_would_take_each_others_place_are_refused_before_the_work() {
         assert!(said.contains(reason), "{files:?}: {said}");
         assert_eq!(names_in(&out), [""; 0], "{files:?}");
     }
+    let mut without_pictures = slump("run cradle --duration 0.02 --data out/a --save out/a");
+    let said = sentence(without_pictures.current_dir(folder.path()));
+    assert!(said.contains("data is out/a, but must be another path than"), "{said}");
     succeed(&mut with(&[["--frames", "out"], ["--gif", "out/a"], ["--save", "manifest.json"]]));
     succeed(&mut with(&[["--gif", "/dev/null"], ["--save", "/dev/null"]]));
 

@@ -11,7 +11,14 @@ fn what_makes_no_video_is_refused_before_anything_is_written() {
     let folder = folder();
     let video = folder.path().join("a.mp4");
     let path = text(&video);
-    let cases: [(&[&str], &str); 6] = [
+    let other = ["a.gif", "a.webm", "a.mkv", "a.avi", "a"].map(|name| folder.path().join(name));
+    for path in &other {
+        let said = sentence(slump(CRADLE).arg("--video").arg(path));
+        let expected = "must be a name that ends with .mp4, as the file is written in that format: --gif makes a GIF";
+        assert!(said.starts_with("slump: video is ") && said.ends_with(expected), "{said}");
+    }
+    let cases: [(&[&str], &str); 7] = [
+        (&["--gif", path], "a.mp4, but must be a name that ends with .gif"),
         (&["--video", path, "--size", "321x90"], "size is 321x90, but must be even"),
         (&["--video", path, "--size", "14x90"], "from 16 to 16384 pixels"),
         (&["--video", path, "--fps", "1000"], "fps is 1000 at --video-speed 1, but must be such"),

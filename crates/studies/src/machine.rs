@@ -1,6 +1,7 @@
 //! What a time was measured on, when, and with which command; and the runner of what is measured there.
 
 use std::path::Path;
+use std::time::SystemTime;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -37,7 +38,7 @@ impl Machine {
             version: version.to_owned(),
             processor,
             cores: std::thread::available_parallelism().map_or(1, usize::from),
-            date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
+            date: date_of(SystemTime::now()),
             command: format!("slump {arguments}"),
             fingerprint: hasher.finalize().to_hex()[..12].to_owned(),
         })
@@ -64,6 +65,13 @@ impl Machine {
     }
 }
 
+/// Year, month and day (UTC) of a clock, which may be wrong.
+fn date_of(now: SystemTime) -> String {
+    let unknown = || "a day that no calendar has".to_owned();
+    jiff::Timestamp::try_from(now)
+        .map_or_else(|_| unknown(), |now| now.strftime("%Y-%m-%d").to_string())
+}
+
 /// The name that Linux gives the processor, or its architecture.
 fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -72,4 +80,20 @@ fn processor() -> String {
         (key.trim() == "model name").then(|| value.trim().to_owned())
     });
     named.filter(|name| !name.is_empty()).unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn a_clock_beyond_the_calendar_is_no_panic() {
+        let date = |secs| date_of(SystemTime::UNIX_EPOCH + Duration::from_secs(secs));
+        assert_eq!(date(86_400), "1970-01-02");
+        let year_10000 = 253_402_300_800;
+        assert_eq!(date(year_10000 - 86_400 * 2), "9999-12-30");
+        assert_eq!(date(2 * year_10000), "a day that no calendar has");
+    }
 }

@@ -122,7 +122,7 @@ impl Study {
             }
         }
         let varied = file.vary.keys().map(|key| names_of(key)).collect();
-        let runs = lay_out(&file)?;
+        let runs = lay_out(&file, path.parent().unwrap_or(Path::new("")))?;
         let mut hasher = blake3::Hasher::new();
         for run in &runs {
             hasher.update(run.key.as_bytes());
@@ -151,7 +151,8 @@ fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Resu
     Ok(())
 }
 
-fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
+/// The runs of a study. Files that it names are relative to `folder`.
+fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     let varied = file.vary.keys().flat_map(|key| key.split_whitespace());
     let mut given: Vec<&str> = file.base.keys().map(String::as_str).collect();
     for name in varied {
@@ -188,7 +189,8 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
             number /= values.len();
         }
         chosen.extend(&file.base);
-        PlannedRun::new(&config_of("base", chosen)?, grains, &(series, &file.data), &mut bases)
+        let config = Config { folder: folder.to_owned(), ..config_of("base", chosen)? };
+        PlannedRun::new(&config, grains, &(series, &file.data), &mut bases)
     };
     (0..count).map(run).collect()
 }

@@ -23,14 +23,15 @@ use crate::config::scene_facts;
 use crate::data::{Recording, Times, formats_of, remove_recording};
 use crate::error::{Error, Result};
 use crate::output::{
-    SharedFolder, check_recognised, check_writable, is_recognised, note_line, remove_if_there,
-    write_file,
+    SharedFolder, check_recognised, check_writable, is_recognised, note_line, remove_drafts,
+    remove_if_there, write_file,
 };
 use crate::scene::Scene;
 
 /// File that says which study a folder holds.
 const STUDY_FILE: &str = "study.json";
 const DATA: &str = "data";
+const STATES: &str = "states";
 const TABLE: &str = "runs.csv";
 /// How long, and how often, another part that only looks at the folder is waited for.
 const MOMENT: Duration = Duration::from_millis(100);
@@ -141,7 +142,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
         let (done, all) = (finished.len(), cases.len());
         note_line(format_args!("{}: {done} of {all} runs were there", study.name));
     }
-    let states_folder = options.states.clone().unwrap_or_else(|| folder.join("states"));
+    let states_folder = options.states.clone().unwrap_or_else(|| folder.join(STATES));
     let pending = cases.iter().filter(|case| !finished.contains_key(&case.key));
     let states = States::of(states_folder, pending.map(|case| &case.setup.config))?;
     let runner = Runner::new(&study.name, journal, finished);
@@ -149,7 +150,11 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     if options.shard.is_some() {
         return Ok(None);
     }
-    join(study, &folders, folder).map(Some)
+    let table = join(study, &folders, folder)?;
+    // All runs are there, so no other process is writing one.
+    let drafts = [folder.to_owned(), folder.join(SERIES), folder.join(STATES)];
+    drafts.iter().try_for_each(|folder| remove_drafts(folder))?;
+    Ok(Some(table))
 }
 
 fn swept(study: &Study, folder: &Path, states: &States, run: &PlannedRun) -> Result<SweptRun> {

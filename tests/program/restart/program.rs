@@ -247,6 +247,23 @@ fn means_of_a_recording_go_on_where_a_run_was_killed_between_two_frames() {
     wait_for("pictures", || stopped.path().join("frame_00003.png").exists());
     child.kill().expect("a child");
     child.wait().expect("an end");
+    // Rows that are lost are not written again, so the run is not resumed without them.
+    let steps = stopped.path().join("data/csv/steps.csv");
+    let rows = bytes(&steps);
+    write(&steps, &rows[..rows.len() / 8]);
+    let left = || {
+        let names =
+            ["observables.csv", "data/frames.csv", "data/csv/grains.csv", "data/csv/steps.csv"];
+        let mut there = names_in(stopped.path());
+        // The killed program left its lock.
+        there.retain(|name| name != ".slump.lock");
+        (there, names.map(|name| bytes(stopped.path().join(name))))
+    };
+    let before = left();
+    let said = refusal(recorded(stopped.path()).stderr(Stdio::piped()));
+    assert!(said.contains("steps.csv: has ") && said.contains("rows of the saved run"), "{said}");
+    assert!(left() == before, "nothing is changed");
+    write(&steps, rows);
     succeed(&mut recorded(stopped.path()));
     let went_on = &manifest(stopped.path())["runs"][0]["went_on_at"][0]["step"];
     assert!((1..200).contains(&went_on.as_u64().expect("a step")), "{went_on}");
@@ -268,7 +285,11 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     let (whole, stopped) = (folder(), folder());
     let line = PILE.replace("0.03", "100");
     succeed(&mut drawn(&line, whole.path()));
+    // It replaces the state that it has saved itself.
+    let of_state = folder();
+    let saved = of_state.path().join("saved.slump");
     let mut run = drawn(&line, stopped.path());
+    run.arg("--save").arg(&saved);
     let mut child = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
     wait_for("pictures", || stopped.path().join("frame_00002.png").exists());
     send("TERM", child.id().into());
@@ -300,7 +321,9 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
         write(stopped.path().join(left), &pixels);
     }
 
-    let said = succeed(&mut drawn(&line, stopped.path()));
+    let of_stop = bytes(&saved);
+    let said = succeed(drawn(&line, stopped.path()).arg("--save").arg(&saved));
+    assert!(bytes(&saved) != of_stop, "the state of the end");
     assert!(said.contains(&format!("the run goes on at step {step}, t = 0.")), "{said}");
     same(whole.path(), stopped.path(), "after a signal");
     let went_on = &manifest(stopped.path())["runs"][0]["went_on_at"];

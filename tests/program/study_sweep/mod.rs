@@ -1,5 +1,7 @@
 //! Sweeps as a user starts them: results, resuming, parts, and what is said of a bad study file.
 
+mod places;
+
 use crate::program::*;
 
 /// Twenty-four runs of the cradle, long enough to be killed in the middle.

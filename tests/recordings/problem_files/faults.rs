@@ -142,7 +142,7 @@ fn the_command_writes_a_problem_and_a_solution() {
     for (at, expected) in [("-1", "at is -1"), ("nan", "at is NaN"), ("1e-9", "scene is none")] {
         let scene = if at == "1e-9" { "none" } else { "pile" };
         let options = ["--scene", scene, "--at", at, "--out"];
-        let said = failure(slump("problem dump").args(options).arg(&problem));
+        let said = failure(slump("problem dump --overwrite").args(options).arg(&problem));
         assert!(said.contains(expected), "{said}");
     }
 }

@@ -201,6 +201,9 @@ impl Destination {
 /// # Errors
 /// Names the field and the folder, and says what the system says.
 pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
+    if folder.as_os_str().is_empty() {
+        return Err(Error::value(field, "''", "the name of a folder"));
+    }
     try_to_write(folder).map_err(|error| {
         let allowed = format!("a folder that can be written to ({error})");
         Error::value(field, folder.display(), allowed)
@@ -230,6 +233,36 @@ pub fn check_file(field: &str, path: &Path) -> Result<()> {
     }
     try_to_write(folder_of(&destination.path))
         .or_else(|error| refuse(&format!("a file in a folder that can be written to ({error})")))
+}
+
+/// Checks as [`check_file`] does, and that no file that has anything in it is at `path`, unless it may be replaced
+/// (`overwrite`).
+///
+/// # Errors
+/// Names the field and the file, and the reason.
+pub fn check_new_file(field: &str, path: &Path, overwrite: bool) -> Result<()> {
+    check_file(field, path)?;
+    let is_there = std::fs::metadata(path).is_ok_and(|there| there.is_file() && there.len() > 0);
+    if overwrite || !is_there {
+        return Ok(());
+    }
+    let allowed = "a file that is not there yet, unless --overwrite is given to replace it";
+    Err(Error::value(field, path.display(), allowed))
+}
+
+/// Removes the drafts that kills have left in a folder of files that are whole by now.
+///
+/// # Errors
+/// Names the file and what the system says.
+pub fn remove_drafts(folder: &Path) -> Result<()> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
+    for name in entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()) {
+        let whole = final_name(&name);
+        if whole != name && folder.join(whole).is_file() {
+            remove_if_there(&folder.join(&name))?;
+        }
+    }
+    Ok(())
 }
 
 /// Where the file is that a path leads to, by the one name that its folder has: files that take each other's place have

@@ -10,8 +10,9 @@ mod seal;
 mod terminal;
 
 pub use files::{
-    DraftFile, FolderLock, Locked, PendingFile, SharedFolder, Texts, check_file, check_writable,
-    final_name, folder_of, in_use, lock_of, nameless_file, remove_if_there, resolved, write_file,
+    DraftFile, FolderLock, Locked, PendingFile, SharedFolder, Texts, check_file, check_new_file,
+    check_writable, final_name, folder_of, in_use, lock_of, nameless_file, remove_drafts,
+    remove_if_there, resolved, write_file,
 };
 pub use growing::{GrowingFile, end_of_last};
 #[cfg(target_arch = "wasm32")]

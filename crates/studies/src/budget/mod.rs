@@ -26,7 +26,7 @@ use self::starts::{RunValues, Starts, run, said_of};
 use crate::config::{Config, joined};
 use crate::error::{self, Error, Result};
 use crate::journal::{self, Journal};
-use crate::output::{check_writable, note_line, print_line, print_text};
+use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts};
 use crate::runner::{FinishedCase, Runner};
 use crate::scene::Scene;
 use crate::sim::Settings;
@@ -104,6 +104,7 @@ pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
         return Ok(budget);
     }
     report::write(&budget, folder)?;
+    [folder, &folder.join("states")].into_iter().try_for_each(remove_drafts)?;
     for one in &budget.quantities {
         print_text(format!("{}\n\n", one.answer));
         print_text(report::table(one).to_markdown());

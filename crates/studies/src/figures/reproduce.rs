@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
 use crate::machine::Machine;
-use crate::output::{check_writable, note_line, print_line, print_text, write_file};
+use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
 use crate::report::write_sheet;
 use crate::solver::worst;
 
@@ -74,6 +74,7 @@ pub fn reproduce(
     );
     let path = folder.join("report.md");
     write_file(&path, report.as_bytes())?;
+    remove_drafts(folder)?;
     print_line(path.display());
     Ok(())
 }

@@ -21,7 +21,7 @@ use serde::de::DeserializeOwned;
 use super::chart::Sheet;
 use super::machine::Machine;
 use crate::error::Result;
-use crate::output::{check_writable, note_line, print_line, print_text, write_file};
+use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
 use crate::report::{ReportTable, write_sheet};
 use crate::runner::Runner;
 
@@ -128,6 +128,7 @@ pub fn chart_speed(options: &ChartOptions, version: &str) -> Result<()> {
     }
     let path = options.out.join("chart.md");
     write_file(&path, report.as_bytes())?;
+    remove_drafts(&options.out)?;
     print_text(&report);
     print_line(format_args!("\n{}", path.display()));
     Ok(())

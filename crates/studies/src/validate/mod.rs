@@ -38,7 +38,7 @@ use self::variants::step_variants;
 use super::machine::Machine;
 use crate::config::parser_of;
 use crate::error::Result;
-use crate::output::{check_writable, print_line, print_text, write_file};
+use crate::output::{check_writable, print_line, print_text, remove_drafts, write_file};
 use crate::report::write_sheet;
 use crate::sim::Stepper;
 use crate::solver::Method;
@@ -117,6 +117,7 @@ pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
     let text = report::markdown(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
     let path = out.join("report.md");
     write_file(&path, text.as_bytes())?;
+    remove_drafts(out)?;
     print_text(&text);
     print_line(path.display());
     Ok(())
