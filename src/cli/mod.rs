@@ -18,7 +18,7 @@ use crate::error::{Error, Result, check};
 use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use crate::output::{
-    Progress, Signal, caught_signal, check_file, check_new_file, heed_signals, ignore_file_size_signal,
+    Progress, Signal, caught_signal, check_new_file, heed_signals, ignore_file_size_signal,
     lost_stdout, note_line, note_printed, print_line, print_text, resolved, warn_of_steps,
     write_file,
 };

@@ -102,8 +102,8 @@ fn an_id_belongs_to_one_body_for_the_whole_recording_in_every_format() {
     for name in ["contacts", "pairs"] {
         let pairs = parquet(folder.path(), name);
         let mut seen = 0;
-        for row in 0..pairs["step"].len() {
-            let [step, i, j] = ["step", "id_i", "id_j"].map(|column| whole(&pairs[column][row]));
+        for (row, step) in pairs["step"].iter().map(whole).enumerate() {
+            let [i, j] = ["id_i", "id_j"].map(|column| whole(&pairs[column][row]));
             assert!(in_frame.contains(&(step, i)), "{name}: {i} at step {step}");
             if pairs["kind_j"][row] != Cell::Word("boundary".into()) {
                 assert!(in_frame.contains(&(step, j)), "{name}: {j} at step {step}");
