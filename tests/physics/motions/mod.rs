@@ -6,6 +6,7 @@ mod gravity;
 mod images;
 mod periodic;
 mod refusals;
+mod rest_on_walls;
 mod sheared;
 mod surfaces;
 mod views;

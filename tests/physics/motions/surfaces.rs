@@ -110,7 +110,8 @@ fn a_belt_goes_round_a_segment_and_a_disc_that_turns_is_a_belt() {
         disc(Motion { fixed_discs: vec![0], surface_speed: SPEED, ..Motion::default() });
     let [one, other] = [&turns, &goes_round].map(|run| run.place(0));
     assert!(one.x < -0.01, "it was pulled along: {one}");
-    assert!(one.distance(other) < 1e-9, "{one} and {other}");
+    // The belt has its speed at the disc, and what turns has it at the grain, across the gap.
+    assert!(one.distance(other) < 1e-8, "{one} and {other}");
 }
 
 const MU_OF_DRUM: f64 = 0.5;

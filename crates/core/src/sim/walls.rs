@@ -4,6 +4,33 @@
 //! way over Δt. One that a force drives begins with the speed that it has, and its step says with which it goes on
 //! (`solver::problem::walls`). The contacts see it where they touch, and with the grains the body is
 //! carried by it.
+//!
+//! **Walls that turn.** With R the rotation of a step by α = ωΔt about p, the point of the wall at c has the mean
+//! velocity V(c) = (R − 1)(c − p)/Δt, of which −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent t
+//! from its beginning, but the normal turns with the wall. Let c be the centre of a disc that slides with u along a
+//! flat wall. The gap grows by Δt cos α (v_n − V_n) with
+//!
+//! > V_n = n·V(c) − u tan α,  V_t = t·V(c) − rω.
+//!
+//! A disc that sticks (v_t = V_t, spin ω) thus goes as the wall does, and its gap stays, whatever Δt is. The point of
+//! the wall that the disc touches would not do as c: the gap of a disc that sticks would grow by ½ω²Δt·r per second.
+//! The code has sin α in the place of tan α, which differs from it by α³/2.
+//!
+//! Round a fixed disc with centre q the normal turns with the grain:
+//!
+//! > V_n = n·V(c) − u tan ½α.
+//!
+//! This is the velocity of q along n where the grain stays at its place. In between the error is the one of a disc that
+//! does not turn, whose normals stay those of the beginning of the step. A surface speed leads the grain round, too:
+//! with ρ the radius of the disc, L = |c − q| and β = (ω + surface speed/ρ)Δt, and w = u + L sin α/Δt relative to q,
+//!
+//! > V_n = n·V(q) − w tan ½β = n·V(c) − u tan ½β − (tan ½β − tan ½α) L sin α/Δt.
+//!
+//! u is the one with which the step begins. A grain at rest relative to the wall has had the mean velocity V⁻ of the
+//! step before, with (1 − R⁻¹)/Δt in the place of (R − 1)/Δt, so u is counted from that. Along n it has had n·V⁻(c) and
+//! the other terms with + in the place of −, which restitution and shocks are counted from.
+
+use std::f64::consts::FRAC_PI_4;
 
 use glam::DVec2;
 
@@ -18,6 +45,8 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
+    /// Δt, s.
+    secs: f64,
     /// The wall of each boundary, of each fixed disc, and of each feature, or [`NONE`].
     of_boundary: Vec<u32>,
     of_disc: Vec<u32>,
@@ -30,6 +59,8 @@ pub(crate) struct Walls {
 struct Wall {
     mover: Mover,
     velocity: RigidVelocity,
+    /// The velocity with which the step begins.
+    before: RigidVelocity,
     /// Along the tangent besides, m/s.
     surface_speed: f64,
     driver: Option<Driver>,
@@ -58,25 +89,29 @@ impl Walls {
     /// Begins a step of that length.
     pub(crate) fn begin(&mut self, world: &World, candidates: &Candidates, time_step_secs: f64) {
         self.moving.clear();
+        self.secs = time_step_secs;
         let by_themselves = world.boundaries.iter().enumerate().filter_map(|(index, boundary)| {
             let velocity = boundary.velocity_in(time_step_secs)?;
             let mover = Mover::Boundary(index);
-            Some(Wall { mover, velocity, surface_speed: 0.0, driver: None })
+            Some(Wall { mover, velocity, before: velocity, surface_speed: 0.0, driver: None })
         });
         let mut number = 0;
         let by_motions = world.motions.iter().enumerate().map(|(index, motion)| {
             let mut velocity = motion.velocity_in(time_step_secs);
+            let mut before = motion.velocity_before(time_step_secs);
             let driver = motion.drive.as_ref().map(|drive| {
                 let driver = Driver { number, axis: drive.axis(), course: velocity.velocity };
                 number += 1;
                 velocity.velocity += drive.speed * driver.axis;
+                before.velocity += drive.speed * driver.axis;
                 driver
             });
             let surface_speed = motion.surface_speed;
-            Wall { mover: Mover::Motion(index), velocity, surface_speed, driver }
+            Wall { mover: Mover::Motion(index), velocity, before, surface_speed, driver }
         });
         let moves = |wall: &Wall| {
-            wall.velocity.moves() || wall.surface_speed != 0.0 || wall.driver.is_some()
+            let moves = wall.velocity.moves() || wall.before.moves();
+            moves || wall.surface_speed != 0.0 || wall.driver.is_some()
         };
         self.moving.extend(by_themselves.chain(by_motions).filter(moves));
         if !self.moving.is_empty() {
@@ -85,7 +120,7 @@ impl Walls {
     }
 
     fn find_bodies(&mut self, world: &World, candidates: &Candidates) {
-        let Self { moving, of_boundary, of_disc, of_feature, shapes } = self;
+        let Self { moving, of_boundary, of_disc, of_feature, shapes, .. } = self;
         of_boundary.clear();
         of_boundary.resize(world.boundaries.len(), NONE);
         of_disc.clear();
@@ -114,6 +149,11 @@ impl Walls {
 
     pub(crate) fn any_move(&self) -> bool {
         !self.moving.is_empty()
+    }
+
+    /// Says that contacts are looked at in each of so many substeps.
+    pub(crate) fn divide(&mut self, substeps: u32) {
+        self.secs /= f64::from(substeps);
     }
 
     /// Speed of the fastest shape, m/s. Of a half-space that turns, that which it has at the farthest grain.
@@ -160,20 +200,31 @@ impl Walls {
         if self.moving.is_empty() {
             return None;
         }
-        let (number, (is_half_space, is_pushed)) = match Numbering::of(world).other(contact.other) {
+        let other = Numbering::of(world).other(contact.other);
+        let (number, (is_half_space, is_pushed), round_disc) = match other {
             Other::Grain(_) => return None,
-            Other::FixedDisc(disc) => (self.of_disc[disc], (false, false)),
-            Other::Feature(feature) => (self.of_feature[feature], self.shapes[feature]),
+            Other::FixedDisc(disc) => {
+                (self.of_disc[disc], (false, false), Some(world.fixed_discs[disc].radius))
+            }
+            Other::Feature(feature) => (self.of_feature[feature], self.shapes[feature], None),
         };
         let wall = self.moving.get(number as usize)?;
-        let radius = world.grains.radii[contact.grain as usize];
-        let place = centre - (radius + contact.gap) * contact.normal;
-        let velocity = wall.velocity.at(place);
+        let [velocity, before] = match wall.spin_of_normal(round_disc) {
+            0.0 if wall.before.spin == 0.0 => [wall.velocity.velocity, wall.before.velocity],
+            spin => {
+                let grain = contact.grain as usize;
+                let (radius, velocity) =
+                    (world.grains.radii[grain], world.grains.velocities[grain]);
+                let touching = TouchedPlace { centre, radius, velocity, contact, round_disc };
+                wall.velocities_at(&touching, spin, self.secs)
+            }
+        };
         let driven = wall.driver.map(|Driver { number, axis, .. }| {
             let along_tangent = if is_pushed { 0.0 } else { axis.dot(contact.normal.perp()) };
             DrivenBy { wall: number, along: [axis.dot(contact.normal), along_tangent] }
         });
-        Some(Surface { velocity, round: wall.surface_speed, is_half_space, is_pushed, driven })
+        let round = wall.surface_speed;
+        Some(Surface { velocity, before, round, is_half_space, is_pushed, driven })
     }
 
     /// The walls that a force drives, as they begin a step of that length.
@@ -259,7 +310,51 @@ impl Walls {
     }
 }
 
+/// A grain that touches a wall.
+struct TouchedPlace<'a> {
+    centre: DVec2,
+    radius: f64,
+    velocity: DVec2,
+    contact: &'a Contact,
+    /// The radius of the fixed disc that it touches, m; none of a boundary.
+    round_disc: Option<f64>,
+}
+
 impl Wall {
+    /// How fast the normal turns of a grain that is at rest relative to the surface, rad/s. With it goes the surface
+    /// speed where that leads round a fixed disc of a radius, m.
+    fn spin_of_normal(&self, round_disc: Option<f64>) -> f64 {
+        match round_disc {
+            Some(radius) if self.surface_speed != 0.0 => {
+                self.velocity.spin + self.surface_speed / radius
+            }
+            _ => self.velocity.spin,
+        }
+    }
+
+    /// The velocities (m/s) of the surface where it turns: in the step, and as the step begins (see the module).
+    fn velocities_at(&self, touching: &TouchedPlace<'_>, spin: f64, secs: f64) -> [DVec2; 2] {
+        let TouchedPlace { centre, radius, velocity, contact, round_disc } = *touching;
+        let (normal, tangent) = (contact.normal, contact.normal.perp());
+        let [now, before] = [self.velocity, self.before];
+        let [there, there_before] = [now.mean_from(centre, secs), before.mean_until(centre, secs)];
+        let slide = (velocity - there_before).dot(tangent);
+        let sine = libm::sin(secs * now.spin);
+        let turning = match round_disc {
+            Some(round) => {
+                let of = |spin: f64| libm::tan((0.5 * secs * spin).clamp(-FRAC_PI_4, FRAC_PI_4));
+                let by_shape = sine * (radius + contact.gap + round) / secs;
+                of(spin) * slide + (of(spin) - of(now.spin)) * by_shape
+            }
+            None => sine * slide,
+        };
+        let along = |velocity: DVec2, turning: f64, spin: f64| {
+            let tangential = velocity.dot(tangent) - radius * spin;
+            (velocity.dot(normal) + turning) * normal + tangential * tangent
+        };
+        [along(there, -turning, now.spin), along(there_before, turning, before.spin)]
+    }
+
     /// True where it moves a boundary along its normal and no other way.
     fn pushes(&self, world: &World, boundary: &Boundary) -> bool {
         self.surface_speed == 0.0

@@ -110,6 +110,17 @@ impl Motion {
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
     }
 
+    /// The velocity from which the course goes over smoothly into that of the next `secs`: of a sine the mean of the
+    /// `secs` before. Other courses have jumps alone, and a jump of a wall's velocity strikes the grains.
+    pub(crate) fn velocity_before(&self, secs: f64) -> RigidVelocity {
+        match &self.course {
+            Some(course @ (MotionCourse::Sine { .. } | MotionCourse::Swing { .. })) => {
+                course.velocity_in(self.elapsed_secs - secs, secs)
+            }
+            _ => self.velocity_in(secs),
+        }
+    }
+
     /// A vector along which they go, if they go straight on in such a step; of any length.
     pub(crate) fn direction(&self, velocity: &RigidVelocity) -> Option<DVec2> {
         match (&self.course, &self.drive) {
@@ -327,6 +338,31 @@ impl RigidVelocity {
     #[inline]
     pub(crate) fn at(&self, place: DVec2) -> DVec2 {
         if self.spin == 0.0 { self.velocity } else { self.spin * (place - self.pivot).perp() }
+    }
+
+    /// The mean velocity, m/s, that the point of the body which is at `place` has in the next `secs`:
+    /// (R − 1)(c − p)/Δt where R is the rotation of the step.
+    #[inline]
+    pub(crate) fn mean_from(&self, place: DVec2, secs: f64) -> DVec2 {
+        self.mean(place, secs, -1.0)
+    }
+
+    /// The mean velocity, m/s, that the point of the body which is at `place` has had in the last `secs`:
+    /// (1 − R⁻¹)(c − p)/Δt.
+    #[inline]
+    pub(crate) fn mean_until(&self, place: DVec2, secs: f64) -> DVec2 {
+        self.mean(place, secs, 1.0)
+    }
+
+    /// The mean velocity of a point, with that sign of the part along the pivot's direction.
+    fn mean(&self, place: DVec2, secs: f64, sign: f64) -> DVec2 {
+        if self.spin == 0.0 {
+            return self.velocity;
+        }
+        let half = direction(0.5 * secs * self.spin);
+        let (sine, versine) = (2.0 * half.x * half.y, 2.0 * half.y * half.y);
+        let offset = place - self.pivot;
+        (sine * offset.perp() + sign * versine * offset) / secs
     }
 
     pub(crate) fn moves(&self) -> bool {

@@ -215,7 +215,9 @@ pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
         let velocity_of = |j| grains.velocities[j] + world.speed_of_image(i, j) * DVec2::X;
         let velocity_of_other = j.map_or(DVec2::ZERO, velocity_of);
         let approach = (grains.velocities[i] - velocity_of_other).dot(contact.normal);
-        let approach = approach - walls.velocity(world, contact)[0];
+        let centre = grains.positions[i] - time_step_secs * grains.velocities[i];
+        let surface = walls.surface_at(world, contact, centre);
+        let approach = approach - surface.map_or(0.0, |it| it.along(contact.normal)[0]);
         let depth = -(contact.gap + time_step_secs * approach) - left;
         deepest = deepest.max(depth);
         let inverse = 1.0 / grains.masses[i] + j.map_or(0.0, |j| 1.0 / grains.masses[j]);

@@ -56,6 +56,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         substep_secs: parameters.time_step_secs / f64::from(substeps),
     };
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
+    stage.state.walls.divide(substeps);
     let of_step = stage.state.contacts.contacts().to_vec();
     stage.state.contacts.impulses_mut().fill(Impulse::default());
     let mut pushes = Vec::new();

@@ -1,8 +1,9 @@
 //! Surfaces that move, and walls that a force drives, as the contacts of a step see them.
 //!
 //! **Along the normal.** Relative to a surface of speed V a grain has v_n − V. So the law's
-//! v_n + ρ v_n^{n−1} becomes v_n − V + ρ (v_n^{n−1} − V): what is added to v_n is another number, and no
-//! method has to know.
+//! v_n + ρ v_n^{n−1} becomes v_n − V + ρ (v_n^{n−1} − V⁻): what is added to v_n is another number, and no
+//! method has to know. V⁻ is the speed that the surface begins the step with: a grain that rests on a surface which
+//! gathers speed has v_n^{n−1} = V⁻, and does not bounce.
 //!
 //! **Along the tangent** the law's v_t becomes v_t − V_t, which no such number can say. A row against a fixed
 //! body has V_t where a pair has its share of the masses, which is 1 there. A sweep subtracts what lies in the
@@ -40,6 +41,8 @@ const NONE: u32 = u32::MAX;
 pub struct Surface {
     /// The velocity of the shape there, m/s.
     pub velocity: DVec2,
+    /// The velocity of the shape there as the step begins, m/s.
+    pub before: DVec2,
     /// What the surface has besides along t, round the shape that stays, m/s.
     pub round: f64,
     /// True where the shape is a half-space, which looks the same wherever it goes along itself.
@@ -186,7 +189,9 @@ impl<M: Model> StepProblem<M> {
             row.surface_speed = slide;
             let [velocity, _] = M::velocity(row.normal, &bodies.before[row.i as usize]);
             let in_touch = contacts.is_in_touch(index as usize);
-            let approach = Approach { velocity: velocity - speed, gap: contact.gap, in_touch };
+            let speed_before = surface.map_or(0.0, |surface| surface.before.dot(contact.normal));
+            let velocity = velocity - speed_before;
+            let approach = Approach { velocity, gap: contact.gap, in_touch };
             row.restitution_velocity = rebound(approach) - speed;
             walls.speeds.push(speed);
             let added = [row.restitution_velocity, row.surface_speed];
@@ -210,6 +215,16 @@ impl<M: Model> StepProblem<M> {
     #[inline(always)]
     pub fn wall_speed(&self, number: usize) -> f64 {
         self.walls.speeds.get(number).copied().unwrap_or(0.0)
+    }
+
+    /// How fast the wall of a row came as the step began, by the row's number, m/s.
+    pub(crate) fn wall_speed_before(&self, number: usize) -> f64 {
+        if self.gives_way(number) {
+            return self.wall_speed(number);
+        }
+        let Some(surface) = self.walls.surfaces.get(number).copied().flatten() else { return 0.0 };
+        let [x, y] = M::components(self.rows.fixed[number].normal);
+        surface.before.dot(DVec2::new(x, y))
     }
 
     /// How fast the surfaces behind all rows go along t, m/s: 0 between grains; none where no surface moves.
@@ -300,7 +315,8 @@ impl<M: Model> StepProblem<M> {
     /// How fast the wall of a row comes along n as the step begins, and what it gains in the step, m/s.
     pub(crate) fn wall_speed_and_gain(&self, number: usize) -> [f64; 2] {
         let Some(known) = self.walls.driven_row(number) else {
-            return [self.wall_speed(number), 0.0];
+            let before = self.wall_speed_before(number);
+            return [before, self.wall_speed(number) - before];
         };
         let DrivenBy { wall, along: [along, _] } = known.by;
         let wall = &self.walls.driven[wall as usize];

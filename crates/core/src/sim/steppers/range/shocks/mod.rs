@@ -299,7 +299,7 @@ impl Shocks {
             let contact = contacts.contacts()[index];
             let (is_bonded, bond) = (contacts.is_in_touch(index), contacts.bonds()[index]);
             let touches = contact.gap <= numbers.touch;
-            let speed = motion.before[0] - problem.wall_speed(number);
+            let speed = motion.before[0] - problem.wall_speed_before(number);
             let (i, j) = grains(problem, number);
             for grain in std::iter::once(i).chain(j) {
                 let [x, y, _] = bodies[grain].gain;
