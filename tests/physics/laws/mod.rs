@@ -3,6 +3,7 @@
 mod cohesion;
 mod conservation;
 mod cradle;
+mod floors;
 mod impacts;
 mod lost_grains;
 mod moments;

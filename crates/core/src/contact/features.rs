@@ -4,6 +4,7 @@ use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry2d_f64::shape::{HalfSpace, Segment, SegmentPointLocation};
 
+use super::seams::{Seams, nearest_corner};
 use crate::error::{Error, Result};
 use crate::world::{Boundary, Carry};
 
@@ -27,11 +28,15 @@ pub(crate) enum Feature {
         before: Option<Segment>,
         /// True where another one follows.
         has_next: bool,
+        /// Its ends that other boundaries have as well.
+        seams: Seams,
     },
     /// A solid convex polygon, anticlockwise.
     ConvexPolygon {
         /// Its sides.
         sides: Vec<Segment>,
+        /// Its corners that other boundaries have as well.
+        seams: Seams,
     },
 }
 
@@ -77,7 +82,7 @@ impl Feature {
                 let count = points.len();
                 let sides =
                     (0..count).map(|k| Segment::new(points[k], points[(k + 1) % count])).collect();
-                features.push(Feature::ConvexPolygon { sides });
+                features.push(Feature::ConvexPolygon { sides, seams: Seams::default() });
             }
         }
         Ok(())
@@ -107,7 +112,7 @@ impl Feature {
         let mut before = segments().next_back().filter(|_| closes);
         for (index, shape) in segments().enumerate() {
             let has_next = closes || index + 2 < points.len();
-            features.push(Feature::Segment { shape, before, has_next });
+            features.push(Feature::Segment { shape, before, has_next, seams: Seams::default() });
             before = Some(shape);
         }
         Ok(())
@@ -125,11 +130,23 @@ impl Feature {
                     *shape = HalfSpace::new(*normal / normal.length());
                 }
             }
-            Feature::Segment { shape, before, .. } => {
+            Feature::Segment { shape, before, seams, .. } => {
                 follow(shape);
                 before.iter_mut().for_each(follow);
+                seams.carry(carry);
             }
-            Feature::ConvexPolygon { sides } => sides.iter_mut().for_each(follow),
+            Feature::ConvexPolygon { sides, seams } => {
+                sides.iter_mut().for_each(follow);
+                seams.carry(carry);
+            }
+        }
+    }
+
+    /// Its corners that other boundaries have as well; a half-space has no corners.
+    pub(super) fn seams_mut(&mut self) -> Option<&mut Seams> {
+        match self {
+            Feature::HalfSpace { .. } => None,
+            Feature::Segment { seams, .. } | Feature::ConvexPolygon { seams, .. } => Some(seams),
         }
     }
 
@@ -138,7 +155,7 @@ impl Feature {
         let (segment, sides): (_, &[Segment]) = match self {
             Feature::HalfSpace { .. } => (None, &[]),
             Feature::Segment { shape, .. } => (Some([shape.a, shape.b]), &[]),
-            Feature::ConvexPolygon { sides } => (None, sides),
+            Feature::ConvexPolygon { sides, .. } => (None, sides),
         };
         segment.into_iter().flatten().chain(sides.iter().map(|side| side.a))
     }
@@ -169,7 +186,7 @@ impl Feature {
                 let distance = offset.distance(projection.point);
                 Some((shape.normal, if projection.is_inside { -distance } else { distance }))
             }
-            Feature::Segment { shape, before, has_next } => {
+            Feature::Segment { shape, before, has_next, seams } => {
                 let (nearest, location) = shape.project_local_point_and_get_location(centre, false);
                 match location {
                     SegmentPointLocation::OnVertex(1) if *has_next => return None,
@@ -184,9 +201,14 @@ impl Feature {
                     }
                     _ => {}
                 }
+                if let SegmentPointLocation::OnVertex(end) = location
+                    && !seams.reports(end as usize, centre)
+                {
+                    return None;
+                }
                 Some(outward(centre, nearest.point, left_of(shape)))
             }
-            Feature::ConvexPolygon { sides } => {
+            Feature::ConvexPolygon { sides, seams } => {
                 // Inside, the way out is through the side whose line is nearest. Outside, the
                 // surface's nearest point is that of the nearest side.
                 let depth = |side: &Segment| (centre - side.a).dot(-left_of(side));
@@ -197,6 +219,12 @@ impl Feature {
                     });
                 if depth <= 0.0 {
                     return Some((normal, depth));
+                }
+                if !seams.is_empty()
+                    && let Some(corner) = nearest_corner(sides, centre)
+                    && !seams.reports(corner, centre)
+                {
+                    return None;
                 }
                 let nearest =
                     sides.iter().map(|side| side.project_local_point(centre, false).point).min_by(

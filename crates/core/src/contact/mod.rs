@@ -10,6 +10,7 @@ mod lanes;
 pub(crate) mod law;
 mod numbering;
 pub mod range;
+mod seams;
 mod too_close;
 mod transmitted;
 

@@ -248,6 +248,7 @@ impl Simulation {
         world.validate(self.state.physics)?;
         self.state.world = world;
         self.state.is_held = true;
+        self.state.candidates.find_seams(&self.state.world);
         self.watch.losses.let_walls_move(self.state.candidates.features());
         Ok(())
     }
@@ -255,6 +256,7 @@ impl Simulation {
     fn let_go(&mut self) {
         if std::mem::take(&mut self.state.is_held) {
             self.state.world.motions.pop();
+            self.state.candidates.find_seams(&self.state.world);
         }
     }
 }

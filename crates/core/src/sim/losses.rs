@@ -201,7 +201,9 @@ impl Edges {
                 // On open ground grains may roll as far as they like.
                 Feature::HalfSpace { .. } => return Self::default(),
                 Feature::Segment { shape, .. } => fixed.extend([shape.a, shape.b]),
-                Feature::ConvexPolygon { sides } => fixed.extend(sides.iter().map(|side| side.a)),
+                Feature::ConvexPolygon { sides, .. } => {
+                    fixed.extend(sides.iter().map(|side| side.a))
+                }
             }
         }
         if fixed.is_empty() {
@@ -247,7 +249,7 @@ fn frame(feature: &Feature) -> [DVec2; 2] {
     match feature {
         Feature::HalfSpace { point, .. } => [*point; 2],
         Feature::Segment { shape, .. } => [shape.a, shape.b],
-        Feature::ConvexPolygon { sides } => [sides[0].a, sides[0].b],
+        Feature::ConvexPolygon { sides, .. } => [sides[0].a, sides[0].b],
     }
 }
 
@@ -269,7 +271,7 @@ fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     match feature {
         Feature::HalfSpace { .. } => if_lost(feature.distance_to_any_point(to) < deep),
         Feature::Segment { shape, .. } => if_lost(crosses(from, to, shape)),
-        Feature::ConvexPolygon { sides } => {
+        Feature::ConvexPolygon { sides, .. } => {
             let depth = |place: DVec2| {
                 let above = |side: &Segment| (place - side.a).dot(outward(side));
                 sides.iter().map(above).fold(f64::NEG_INFINITY, f64::max)

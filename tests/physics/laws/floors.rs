@@ -1,0 +1,111 @@
+//! A floor may be made of pieces that adjoin: a disc that slides or rolls over it does not feel where they meet.
+
+use crate::common::*;
+
+const RADIUS: f64 = 0.05;
+
+fn at(x: f64) -> DVec2 {
+    DVec2::new(x, 0.0)
+}
+
+fn segment(from: f64, to: f64) -> Boundary {
+    Boundary::Segment { from: at(from), to: at(to) }
+}
+
+/// A level floor from 0 to 4 m in pieces of 0.1 m.
+fn floors() -> Vec<(&'static str, Vec<Boundary>)> {
+    // The ends of neighbours are equal but for rounding.
+    let ends = || (0..40).map(|k| (0.1 * f64::from(k), 0.1 * f64::from(k) + 0.1));
+    let polygon = |(left, right): (f64, f64), depth: f64| Boundary::ConvexPolygon {
+        points: vec![
+            at(left) - depth * DVec2::Y,
+            at(right) - depth * DVec2::Y,
+            at(right),
+            at(left),
+        ],
+    };
+    let polygons = |deeper: f64| {
+        let depths = [0.1, 0.1 + deeper].into_iter().cycle();
+        ends().zip(depths).map(|(ends, depth)| polygon(ends, depth)).collect()
+    };
+    let props =
+        ends().map(|(left, _)| Boundary::Segment { from: at(left) - 0.2 * DVec2::Y, to: at(left) });
+    vec![
+        ("segments", ends().map(|(left, right)| segment(left, right)).collect()),
+        ("segments backward", ends().map(|(left, right)| segment(right, left)).rev().collect()),
+        ("segments there and back", {
+            let turns = [false, true].into_iter().cycle();
+            let piece = |((left, right), turn)| {
+                if turn { segment(right, left) } else { segment(left, right) }
+            };
+            ends().zip(turns).map(piece).collect()
+        }),
+        ("polygons", polygons(0.0)),
+        ("polygons of two depths", polygons(0.1)),
+        ("a segment on props", std::iter::once(segment(0.0, 4.0)).chain(props.clone()).collect()),
+        ("a half-space on props", props.chain([level()]).collect()),
+    ]
+}
+
+#[test]
+fn a_disc_does_not_feel_where_the_pieces_of_a_floor_meet() {
+    let speed = 2.0;
+    let ways = [("slides", 0.0, 0.0), ("rolls", 0.5, -speed / RADIUS)];
+    for (((name, floor), (way, friction, spin)), &stepper) in
+        pairs(pairs(floors(), ways), Stepper::ALL)
+    {
+        let grain = Grain {
+            angular_velocity: spin,
+            ..moving(DVec2::new(0.3, RADIUS), RADIUS, speed * DVec2::X)
+        };
+        let scene = under_g(parameters(0.0, 1e-3, 0.0, friction), vec![grain]);
+        let mut run = start(&Scene { stepper, boundaries: floor, ..scene });
+        for step in 0..1000 {
+            take_steps(&mut run, 1);
+            let off = (run.velocity(0).x - speed).abs();
+            assert!(off < 1e-6, "{stepper}, {way} over {name}: {off} m/s in step {step}");
+        }
+    }
+}
+
+/// Pieces that move apart are steps; those that go together are a floor.
+#[test]
+fn a_seam_is_where_pieces_go_together() {
+    let run_over = |second: MotionCourse| {
+        let grain = moving(DVec2::new(0.3, RADIUS), RADIUS, 2.0 * DVec2::X);
+        let motions = vec![goes(&[0], straight(DVec2::X * 1e-9)), goes(&[1], second)];
+        let scene = under_g(parameters(0.0, 1e-3, 0.0, 0.0), vec![grain]);
+        let boundaries = vec![segment(0.0, 1.0), segment(1.0, 4.0)];
+        after(&Scene { boundaries, motions, ..scene }, 600).velocity(0).x
+    };
+    // The second piece rises by 3.5 mm until the disc is there.
+    let stepped = run_over(straight(DVec2::Y * 1e-2));
+    assert!(stepped < 1.9, "{stepped} m/s after a step");
+    let grain = moving(DVec2::new(0.3, RADIUS), RADIUS, 2.0 * DVec2::X);
+    let motions = vec![goes(&[0, 1], straight(0.1 * DVec2::Y))];
+    let scene = under_g(parameters(0.0, 1e-3, 0.0, 0.0), vec![grain]);
+    let boundaries = vec![segment(0.0, 1.0), segment(1.0, 4.0)];
+    let lifted = after(&Scene { boundaries, motions, ..scene }, 600).velocity(0);
+    assert!(lifted.distance(DVec2::new(2.0, 0.1)) < 1e-6, "{lifted}");
+}
+
+/// A hand that draws a piece away opens the seam, and letting go of it where it adjoins closes it.
+#[test]
+fn a_hand_opens_and_closes_a_seam() {
+    let grain = moving(DVec2::new(0.3, RADIUS), RADIUS, 2.0 * DVec2::X);
+    let scene = Scene {
+        boundaries: vec![segment(0.0, 1.0), segment(1.0, 4.0)],
+        ..under_g(parameters(0.0, 1e-3, 0.0, 0.0), vec![grain])
+    };
+    let speed_after = |lowered: bool| {
+        let mut run = start(&scene);
+        if lowered {
+            let to = DVec2::new(1.0, 2e-3);
+            run.edit(&Edit::Draw { boundary: 1, to }).expect("a wall");
+        }
+        take_steps(&mut run, 600);
+        run.velocity(0).x
+    };
+    assert_close(speed_after(false), 2.0, 1e-6, "a seam");
+    assert!(speed_after(true) < 1.9, "a step: {} m/s", speed_after(true));
+}
