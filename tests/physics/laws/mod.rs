@@ -8,4 +8,5 @@ mod impacts;
 mod lost_grains;
 mod moments;
 mod slopes;
+mod turning_pairs;
 mod two_bodies;

@@ -37,6 +37,18 @@ impl Contact {
     pub(crate) fn pair(&self) -> (u32, u32) {
         (self.grain, self.other)
     }
+
+    /// The gap of the pair where its bodies are now, m, or nothing where another feature touches the grain instead.
+    pub(crate) fn gap_now(
+        &self,
+        world: &World,
+        candidates: &Candidates,
+        axes: usize,
+    ) -> Option<f64> {
+        let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
+        let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
+        approach(world, candidates, position, radius, other, axes).map(|(_, gap)| gap)
+    }
 }
 
 /// The impulses of one contact, N·s.

@@ -5,7 +5,7 @@ use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::{SpringDashpot, Stepper, stable_substeps};
 use crate::solver::{FrictionModel, Method, SolverSettings};
-use crate::world::{Periodic, Physics, World};
+use crate::world::{FrictionCone, Periodic, Physics, World};
 
 words! {
     /// The change that is most likely to help against an alarm.
@@ -31,6 +31,8 @@ words! {
             "it no longer counts in slump; if it was to stay, put a wall or a floor in its way";
         BondAcceleration = "bond-acceleration",
             "the cohesion force is Bond·m·g, and g is 0; try a bond-acceleration above 0 m/s²";
+        BondsOfRange = "bonds-of-range", "try the stepper range, whose bonds do not depend on turning";
+        BondsOfDem = "bonds-of-dem", "try the stepper dem, whose bonds do not depend on turning";
         Cohesion = "cohesion", "set cohesion = true under [physics] in the scene file";
     }
 }
@@ -55,6 +57,14 @@ pub(super) fn on_no_cohesion(
         _ if !physics.cohesion => Some(Advice::Cohesion),
         0.0 => Some(Advice::BondAcceleration),
         _ => None,
+    }
+}
+
+/// On bonds that ended because their pairs turned: `range` has no compressive cone.
+pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
+    match settings.parameters.cone {
+        FrictionCone::Compressive => Advice::BondsOfDem,
+        FrictionCone::Shifted => Advice::BondsOfRange,
     }
 }
 

@@ -40,6 +40,7 @@ words! {
         EnergyCreated = "energy-created", "contacts have created energy";
         NoCohesion = "no-cohesion", "Bond is above 0, but no contact pulls";
         BreakUnseen = "break-unseen", "bonds break faster than the substeps of a step can follow";
+        TurnedBonds = "turned-bonds", "bonds that could bear the pull on them ended because their pairs turned";
     }
 }
 
@@ -60,14 +61,25 @@ pub struct Alarm {
     /// The stiffness of the springs that gave way, N/m, if stiffer ones would help.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
+    /// How often it has happened so far, where that is counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u64>,
 }
 
 impl Alarm {
+    fn new(kind: AlarmKind, observables: &Observables, advice: Advice) -> Self {
+        let &Observables { step, time_secs, .. } = observables;
+        let (longest_time_step_secs, stiffness, count) = (None, None, None);
+        Self { kind, step, time_secs, advice, longest_time_step_secs, stiffness, count }
+    }
+
     /// What happened, since when, and what is most likely to help, in one sentence.
     pub fn message(&self, settings: &Settings) -> String {
-        let Self { kind, step, time_secs, .. } = self;
+        let Self { kind, step, time_secs, count, .. } = self;
         let advice = self.advice_in_words(settings);
-        legible(&format!("{} (step {step}, t = {time_secs:.4} s): {advice}", kind.hint()))
+        let so_far = count.map_or_else(String::new, |count| format!("{count} so far, first in "));
+        let hint = kind.hint();
+        legible(&format!("{hint} ({so_far}step {step}, t = {time_secs:.4} s): {advice}"))
     }
 
     fn advice_in_words(&self, settings: &Settings) -> String {
@@ -137,16 +149,10 @@ impl Watch {
         observables: &Observables,
         settings: &Settings,
     ) -> Option<Alarm> {
-        let &Observables { step, time_secs, .. } = observables;
         let overlaps = self.are_placed && self.placed_overlap > LARGEST_OVERLAP;
-        (overlaps && !settings.remedies.push_out).then(|| Alarm {
-            kind: AlarmKind::PlacedInOverlap,
-            step,
-            time_secs,
-            advice: advice::on_placed(settings),
-            longest_time_step_secs: None,
-            stiffness: None,
-        })
+        let kind = AlarmKind::PlacedInOverlap;
+        (overlaps && !settings.remedies.push_out)
+            .then(|| Alarm::new(kind, observables, advice::on_placed(settings)))
     }
 
     /// Raises alarms that the next step cannot mend, before it is taken.
@@ -270,26 +276,36 @@ impl Watch {
             true => (advice::on_unsolved(state, settings, observables.stalled), None),
             false => advice::on_depth(state, settings),
         };
-        let &Observables { step, time_secs, .. } = observables;
-        let longest_time_step_secs = None;
-        self.add(Alarm { kind, step, time_secs, advice, longest_time_step_secs, stiffness });
+        self.add(Alarm { stiffness, ..Alarm::new(kind, observables, advice) });
     }
 
     fn raise_with(&mut self, kind: AlarmKind, observables: &Observables, advice: Advice) {
-        let &Observables { step, time_secs, .. } = observables;
-        let (longest_time_step_secs, stiffness) = (None, None);
-        self.add(Alarm { kind, step, time_secs, advice, longest_time_step_secs, stiffness });
+        self.add(Alarm::new(kind, observables, advice));
     }
 
     /// Raises an alarm on a time step, with the longest that would do if that is known, s.
     pub(super) fn raise(
         &mut self,
         kind: AlarmKind,
-        &Observables { step, time_secs, .. }: &Observables,
+        observables: &Observables,
         longest_time_step_secs: Option<f64>,
     ) {
-        let (advice, stiffness) = (Advice::TimeStep, None);
-        self.add(Alarm { kind, step, time_secs, advice, longest_time_step_secs, stiffness });
+        let alarm = Alarm::new(kind, observables, Advice::TimeStep);
+        self.add(Alarm { longest_time_step_secs, ..alarm });
+    }
+
+    /// Counts bonds that ended in a step because their pairs turned, and raises the alarm of them.
+    pub(super) fn count_turned_bonds(
+        &mut self,
+        settings: &Settings,
+        observables: &Observables,
+        more: u64,
+    ) {
+        let kind = AlarmKind::TurnedBonds;
+        self.add(Alarm::new(kind, observables, advice::on_turned_bonds(settings)));
+        for alarm in self.alarms.iter_mut().filter(|alarm| alarm.kind == kind) {
+            alarm.count = Some(alarm.count.unwrap_or(0) + more);
+        }
     }
 
     /// Adds an alarm, unless there is one of its kind.

@@ -19,6 +19,7 @@ mod state;
 mod step_times;
 mod steppers;
 mod stepping;
+mod turned_bonds;
 mod walls;
 
 pub use advice::Advice;

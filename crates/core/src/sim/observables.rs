@@ -176,7 +176,7 @@ fn of_state<M: Model>(
     time_step_secs: f64,
     initial_heights: f64,
 ) -> Observables {
-    let StepResult { report, measures, gravity_work, drive_work, bonds } = result;
+    let StepResult { report, measures, gravity_work, drive_work, bonds, .. } = result;
     let SolveReport { sweeps, factorisations, converged, stalled } = report;
     let Measures { residual, model_residual, velocity_error, .. } = measures;
     let Measures { compressive_contacts, tensile_contacts, .. } = measures;

@@ -167,7 +167,9 @@ impl Simulation {
 
     /// Takes a step in so many pieces of equal length.
     fn take_step_of<M: Model>(&mut self, pieces: u32, advance: &mut impl Advance) {
-        let Self { state, settings, slots, observables, initial_heights, last_stepper, .. } = self;
+        let Self {
+            state, settings, slots, observables, initial_heights, last_stepper, watch, ..
+        } = self;
         let stage = &mut Stage::<M>::new(state, M::slot(slots));
         let mut result = if pieces == 1 {
             advance.advance(stage, settings)
@@ -186,6 +188,9 @@ impl Simulation {
         result.report.converged &= !is_solved || result.measures.residual.is_finite();
         *observables =
             observables::after_step(stage, result, time_step_secs, observables, *initial_heights);
+        if result.turned_bonds > 0 {
+            watch.count_turned_bonds(settings, observables, result.turned_bonds);
+        }
     }
 
     fn look(&mut self) -> Result<&Observables> {

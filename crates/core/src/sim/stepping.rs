@@ -22,6 +22,8 @@ pub struct StepResult {
     pub drive_work: f64,
     /// Of a law with bonds.
     pub bonds: Option<BondEnergies>,
+    /// Bonds that ended because their pairs turned, where a bond lives while its gap is below zero.
+    pub turned_bonds: u64,
 }
 
 /// What bonds took and gave, J.
@@ -48,11 +50,12 @@ impl StepResult {
 
     /// Counts another piece of the step; what it measures at its end counts for the whole.
     pub fn add(&mut self, piece: Self) {
-        let Self { report, measures, gravity_work, drive_work, bonds } = piece;
+        let Self { report, measures, gravity_work, drive_work, bonds, turned_bonds } = piece;
         self.report.add(report);
         self.measures.add(measures);
         self.gravity_work += gravity_work;
         self.drive_work += drive_work;
+        self.turned_bonds += turned_bonds;
         let earlier = self.bonds.unwrap_or_default();
         self.bonds = bonds.map(|BondEnergies { work, stored, broken }| BondEnergies {
             work: earlier.work + work,
@@ -195,7 +198,7 @@ impl<'a, M: Model> Stage<'a, M> {
             gravity_work += M::work_of_gravity(before, body, free, mass);
         }
         state.integrate::<M>(settings.parameters.time_step_secs);
-        StepResult { report, measures, gravity_work, drive_work, bonds: None }
+        StepResult { report, measures, gravity_work, drive_work, ..StepResult::nothing_yet() }
     }
 
     /// Cuts a step into pieces of equal length and takes them one after the other: `piece` gets the

@@ -96,7 +96,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     descent.remember(stage);
     substeps::hand_over(stage.problem, &contacts);
     stage.problem.store_impulses(&mut stage.state.contacts);
-    substepping.end_step(stage, substeps * (ITERATIONS + 1))
+    substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
 /// Softest κ, and that of a new contact. Softer: new contacts sink in; stiffer: blocks cannot pass a force on.

@@ -6,6 +6,7 @@ use crate::sim::remedies;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::StepperInfo;
 use crate::sim::stepping::{Stage, StepResult};
+use crate::sim::turned_bonds;
 use crate::solver::{Approach, Model};
 
 pub(super) const INFO: StepperInfo = StepperInfo {
@@ -20,9 +21,10 @@ pub(super) const INFO: StepperInfo = StepperInfo {
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     set_up(stage, settings);
     let report = remedies::solve(stage, settings);
-    let result = stage.move_by(report, settings);
+    let mut result = stage.move_by(report, settings);
     stage.state.contacts.sum_up();
     remedies::after_step(stage, settings);
+    result.turned_bonds = turned_bonds::count(stage, settings.parameters.time_step_secs);
     result
 }
 

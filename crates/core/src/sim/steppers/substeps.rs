@@ -11,6 +11,7 @@ use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::moreau::set_up;
 use crate::sim::stepping::{Stage, StepResult};
+use crate::sim::turned_bonds::{is_open_against, is_within_bounds};
 use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
 /// A step on its way through its substeps. Lives for one step: what is carried on is in the
@@ -37,6 +38,25 @@ impl<M: Model> Substepping<M> {
             free: Vec::new(),
             works: StepResult::nothing_yet(),
         }
+    }
+
+    /// Ends the step of contacts whose bonds live while their gaps are below the touch tolerance, after so many passes
+    /// over them. The contacts are as the last substep has left them.
+    pub(super) fn end_step_of(
+        &self,
+        stage: &Stage<'_, M>,
+        contacts: &[Touching],
+        sweeps: u32,
+    ) -> StepResult {
+        let list = stage.state.contacts.contacts();
+        let rows = contacts.iter().zip(&stage.problem.rows.contacts);
+        let turned_bonds = rows.filter(|&(touching, &index)| {
+            let Touching { impulse, capture_speed, gap, .. } = *touching;
+            is_within_bounds(impulse[0], capture_speed)
+                && is_open_against(stage.state, &list[index as usize], gap, M::AXES)
+        });
+        let turned_bonds = turned_bonds.count() as u64;
+        StepResult { turned_bonds, ..self.end_step(stage, sweeps) }
     }
 
     /// Ends the step, after so many passes over its contacts.

@@ -95,7 +95,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.store(stage);
     stage.problem.store_impulses(&mut stage.state.contacts);
     set_drive_speeds(stage);
-    substepping.end_step(stage, 2 * substeps + 1)
+    substepping.end_step_of(stage, &contacts, 2 * substeps + 1)
 }
 
 /// Gives contacts that met, and pushed, the speed they part with.

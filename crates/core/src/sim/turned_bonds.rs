@@ -1,0 +1,56 @@
+//! Bonds that end because their pair turns, and not because of the pull on them.
+//!
+//! A step takes normals from its beginning, and grains go straight. Let two grains with v_n = 0 circle each other with
+//! ω, their centres L apart. At the end of the step they are L √(1 + ω²Δt²) apart: the gap has grown by ½ω²Δt²·L. If a
+//! bond lives while the gap is below zero, turning ends it after some steps, though it could bear far more than the pull.
+//!
+//! A bond counts as ended so if all of this is true of a contact of the step:
+//!
+//! * it pulled, by less than C₀, so its law asked for v̄_n = 0;
+//! * its normal velocity would not have opened it: gap + Δt·v_n is below the touch tolerance;
+//! * after the step its gap is not below the touch tolerance.
+//!
+//! Without cohesion nothing pulls, and nothing counts.
+
+use crate::contact::Contact;
+use crate::sim::state::State;
+use crate::sim::stepping::Stage;
+use crate::solver::{Model, for_each_row};
+
+/// Counts the bonds that ended so in a solved step of that length (s), once the grains have moved.
+pub(super) fn count<M: Model>(stage: &Stage<'_, M>, time_step_secs: f64) -> u64 {
+    let Stage { state, problem, .. } = stage;
+    if problem.law.capture_speed() == 0.0 {
+        return 0;
+    }
+    let mut ended = 0;
+    for_each_row(problem, |number, row, motion| {
+        let [impulse, _] = problem.reduced_impulse(number, row);
+        if is_within_bounds(impulse, problem.capture(number)) {
+            let contact = state.contacts.contacts()[problem.rows.contacts[number] as usize];
+            let opening = motion.now[0] - problem.wall_speed(number);
+            let expected = contact.gap + time_step_secs * opening;
+            ended += u64::from(is_open_against(state, &contact, expected, M::AXES));
+        }
+    });
+    ended
+}
+
+/// True where a contact pulls, by less than its cohesion. Impulses and capture speed are in m/s.
+pub(super) fn is_within_bounds(reduced_impulse: f64, capture_speed: f64) -> bool {
+    reduced_impulse < 0.0 && reduced_impulse > -capture_speed
+}
+
+/// True where the gap of a pair is not below the touch tolerance, though the pair's normal velocities led to a gap
+/// (`expected`, m) that is.
+pub(super) fn is_open_against(
+    state: &State,
+    contact: &Contact,
+    expected: f64,
+    axes: usize,
+) -> bool {
+    let State { world, candidates, .. } = state;
+    let tolerance = candidates.gap_tolerance();
+    expected < tolerance
+        && contact.gap_now(world, candidates, axes).is_some_and(|gap| gap >= tolerance)
+}

@@ -1,0 +1,105 @@
+//! Bonded pairs that circle each other: they break at the spin √(Bond g/2r) where bonds have a length of their own, and
+//! earlier, with a warning, where a bond lives while its gap is below zero.
+
+use crate::common::*;
+
+const RADIUS: f64 = 0.01;
+/// Overlap at the start, in radii.
+const OVERLAP: f64 = 1e-3;
+
+/// Two weightless discs that touch, and circle about their common centre.
+fn doublet(stepper: Stepper, bond: f64, rate: f64, dt: f64) -> Scene {
+    let place = RADIUS * (1.0 - OVERLAP) * DVec2::X;
+    let grains = [-place, place].map(|place| Grain {
+        angular_velocity: rate,
+        ..weightless(moving(place, RADIUS, RADIUS * rate * (place / RADIUS).perp()))
+    });
+    let numbers = parameters(bond, dt, 0.0, 0.5);
+    Scene { stepper, solver: SolverSettings::default(), ..under_g(numbers, grains.to_vec()) }
+}
+
+fn is_whole(run: &Simulation) -> bool {
+    run.place(0).distance(run.place(1)) < 2.1 * RADIUS
+}
+
+fn warning(run: &Simulation) -> Option<Alarm> {
+    run.alarms().iter().find(|alarm| alarm.kind == AlarmKind::TurnedBonds).copied()
+}
+
+/// The spin at which the bond bears the circle, rad/s: m ω² r = Bond ½m g.
+fn break_up(bond: f64) -> f64 {
+    (bond * G / (2.0 * RADIUS)).sqrt()
+}
+
+#[test]
+fn a_pair_breaks_at_the_spin_that_its_bond_bears_where_bonds_have_a_length() {
+    let bond = 20.0;
+    for (stepper, (part, whole)) in pairs(
+        [Stepper::Range, Stepper::Dem],
+        [(0.02, true), (0.9, true), (0.98, true), (1.03, false)],
+    ) {
+        let rate = part * break_up(bond);
+        let run = after(&doublet(stepper, bond, rate, 1e-4), 4000);
+        assert_eq!(is_whole(&run), whole, "{stepper} at {part} of the break-up spin");
+        assert_eq!(warning(&run), None, "{stepper} at {part}");
+    }
+}
+
+/// The pull is 2e-4 of what the bond bears.
+#[test]
+fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
+    let (bond, rate) = (1000.0, 10.0);
+    for (stepper, dt) in pairs([Stepper::Moreau, Stepper::Avbd], [1e-3, 5e-4]) {
+        let scene = doublet(stepper, bond, rate, dt);
+        let run = after(&scene, (0.5 / dt) as usize);
+        let what = format!("{stepper}, {dt} s");
+        let Some(alarm) = warning(&run) else { panic!("{what}: no warning, {:?}", run.alarms()) };
+        assert!(!is_whole(&run), "{what}");
+        assert_eq!(alarm.count, Some(1), "{what}");
+        let said = alarm.message(&scene.settings());
+        assert!(said.contains("1 so far") && said.contains("stepper range"), "{said}");
+        // As the warning says.
+        let advised =
+            after(&Scene { stepper: Stepper::Range, ..scene.clone() }, (0.5 / dt) as usize);
+        assert!(is_whole(&advised) && advised.alarms().is_empty(), "{:?}", advised.alarms());
+        let cone = FrictionCone::Compressive;
+        let mut settings = scene.settings();
+        settings.parameters.cone = cone;
+        assert!(alarm.message(&settings).contains("stepper dem"));
+        let mut elements = Scene { stepper: Stepper::Dem, ..scene };
+        elements.parameters.cone = cone;
+        let advised = after(&elements, (0.5 / dt) as usize);
+        assert!(is_whole(&advised) && warning(&advised).is_none(), "{:?}", advised.alarms());
+    }
+}
+
+/// With ω²Δt² r the gap grows in each step: a bond that overlaps by s lives for s/(ω²Δt² r) steps.
+#[test]
+fn the_gap_of_a_pair_grows_by_its_turning_in_each_step() {
+    let (rate, dt) = (10.0, 1e-3);
+    let mut run = start(&doublet(Stepper::Moreau, 1000.0, rate, dt));
+    take_steps(&mut run, 1);
+    let gap = |run: &Simulation| run.place(0).distance(run.place(1)) - 2.0 * RADIUS;
+    let before = gap(&run);
+    take_steps(&mut run, 10);
+    assert_close(
+        (gap(&run) - before) / 10.0,
+        0.5 * (rate * dt).powi(2) * 2.0 * RADIUS,
+        1e-2,
+        "gap",
+    );
+}
+
+#[test]
+fn nothing_is_counted_without_a_bond_that_bears() {
+    // Without cohesion, and where the pull is more than the bond bears.
+    for (bond, part) in [(0.0, 0.1), (20.0, 3.0)] {
+        let run = after(&doublet(Stepper::Moreau, bond, part * break_up(20.0), 1e-4), 1000);
+        assert!(!is_whole(&run));
+        assert_eq!(warning(&run), None, "Bond {bond} at {part}");
+    }
+    let loose = pressed_pile(60, 0.3, 7, parameters(0.0, 1e-3, 0.3, 0.5));
+    for stepper in [Stepper::Moreau, Stepper::TgsSoft, Stepper::Avbd] {
+        assert_eq!(warning(&after(&Scene { stepper, ..loose.clone() }, 200)), None, "{stepper}");
+    }
+}
