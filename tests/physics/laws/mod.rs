@@ -7,6 +7,7 @@ mod floors;
 mod impacts;
 mod lost_grains;
 mod moments;
+mod pyramid;
 mod slopes;
 mod turning_pairs;
 mod two_bodies;

@@ -1,0 +1,48 @@
+//! A pyramid of logs for which forces exist that hold it: it stands where the touch tolerance keeps its contacts.
+
+use crate::common::*;
+
+const RADIUS: f64 = 0.05;
+const ROWS_OF_LOGS: u32 = 6;
+
+/// 21 logs on a floor with μ = 1.7. Their gaps are some 1e-7 d, with both signs, and the tolerance is in m.
+///
+/// An equilibrium exists: linear programming finds forces within Coulomb's cones that carry all logs.
+fn pyramid(seed: u64, gap_tolerance: f64) -> Scene {
+    let mut random = random(seed);
+    let mut grains = Vec::new();
+    for row in 0..ROWS_OF_LOGS {
+        for log in 0..ROWS_OF_LOGS - row {
+            let (row, log) = (f64::from(row), f64::from(log));
+            let place = DVec2::new(2.0 * log + row, 1.0 + row * 3f64.sqrt() - 1e-6);
+            let mut off = || 2e-7 * random.random_range(-1.0..=1.0);
+            grains.push(Grain::at_rest(RADIUS * (place + DVec2::new(off(), off())), RADIUS));
+        }
+    }
+    Scene {
+        gap_tolerance,
+        solver: SolverSettings::default(),
+        boundaries: vec![level()],
+        ..under_g(parameters(0.0, 1e-3, 0.0, 1.7), grains)
+    }
+}
+
+/// The way of the log that goes farthest in a second, d.
+fn farthest_way(scene: &Scene) -> f64 {
+    let mut run = start(scene);
+    let places = run.places().to_vec();
+    take_steps(&mut run, 1000);
+    farthest(&places, run.places()) / scene.mean_diameter
+}
+
+#[test]
+fn a_pyramid_in_equilibrium_stands_with_a_touch_tolerance() {
+    let tolerance = 1e-5 * 2.0 * RADIUS;
+    for seed in 0..4 {
+        let way = farthest_way(&pyramid(seed, tolerance));
+        assert!(way < 1e-3, "start {seed}: a log went {way} d");
+    }
+    // Without it contacts come and go by rounding, and the pyramid falls: the tolerance is what holds it.
+    let way = farthest_way(&pyramid(0, 0.0));
+    assert!(way > 0.05, "a log went {way} d");
+}
