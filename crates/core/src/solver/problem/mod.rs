@@ -98,7 +98,12 @@ impl<M: Model> StepProblem<M> {
     ) {
         let ProblemNumbers { time_step_secs, friction, capture_speed, cone } = numbers;
         self.law = ContactLaw::new(friction, capture_speed, cone);
-        self.fall_speed = (world.gravity.magnitude() * world.mean_diameter).sqrt();
+        // Without gravity only cohesion sets a scale of speeds: without both, a velocity's error has none.
+        let acceleration = match world.gravity.magnitude() {
+            0.0 => capture_speed / time_step_secs,
+            gravity => gravity,
+        };
+        self.fall_speed = (acceleration * world.mean_diameter).sqrt();
         self.walls.clear();
         self.place_bodies(world, time_step_secs);
         let ordering = settings.method.info().order.of_rows(settings.ordering);
