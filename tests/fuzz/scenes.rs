@@ -331,10 +331,11 @@ fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
         return false;
     }
     let (from, to) = (scene.grains[grain].position, simulation.world().grains.positions[grain]);
-    let unseen = UNSEEN_IN_RADII * scene.grains[grain].radius;
+    let radius = scene.grains[grain].radius;
+    let unseen = UNSEEN_IN_RADII * radius;
     let beyond = |boundary: &Boundary| match boundary {
         Boundary::HalfSpace { point, normal } => {
-            (to - point).dot(normal.normalize_or_zero()) < -scene.mean_diameter - unseen
+            (to - point).dot(normal.normalize_or_zero()) < -2.0 * radius - unseen
         }
         Boundary::Polyline { points } if points.first() == points.last() => {
             is_within(points, from) && !is_within(points, to) && distance(points, to) > unseen

@@ -132,10 +132,6 @@ fn a_line_scene_off_its_line_is_refused() {
     };
     bad(|s| s.grains[0].position.y = 1e-9, "grains[0] is ");
     bad(|s| s.grains[0].velocity.y = 1.0, "grains[0] is ");
-    bad(
-        |s| s.grains[0].angular_velocity = 1.0,
-        "grains[0].angular_velocity is 1, but must be 0 unless",
-    );
     bad(|s| s.fixed_discs[0].position.y = -1.0, "fixed_discs[0] is ");
     let segment = |s: &mut Scene| {
         s.boundaries = vec![Boundary::Segment { from: DVec2::X, to: 2.0 * DVec2::X }];

@@ -63,9 +63,11 @@ fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
             after(&Scene { stepper: Stepper::Range, ..scene.clone() }, (0.5 / dt) as usize);
         assert!(is_whole(&advised) && advised.alarms().is_empty(), "{:?}", advised.alarms());
         let cone = FrictionCone::Compressive;
-        let mut settings = scene.settings();
-        settings.parameters.cone = cone;
-        assert!(alarm.message(&settings).contains("stepper dem"));
+        let mut compressive = scene.clone();
+        compressive.parameters.cone = cone;
+        let run = after(&compressive, (0.5 / dt) as usize);
+        let said = warning(&run).expect("a warning").message(&compressive.settings());
+        assert!(said.contains("stepper dem"), "{said}");
         let mut elements = Scene { stepper: Stepper::Dem, ..scene };
         elements.parameters.cone = cone;
         let advised = after(&elements, (0.5 / dt) as usize);

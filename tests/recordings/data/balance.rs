@@ -398,34 +398,43 @@ fn walls_tell_of_strain_force_and_work() {
     assert!(left.1.x < 0.0 && right.1.x > 0.0 && lid.1.y > 0.0 && floor.1.y < 0.0);
     assert!(lid.2 > 0.0 && floor.2 == 0.0, "{lid:?}");
 
-    // A drum's torque times its spin is its work, and that is what steps say.
-    let mut drum = scene("drum");
-    drum.parameters.time_step_secs = 1e-3;
-    let mut run = drum.simulation().expect("a scene");
-    run.take_steps(200).expect("finite states");
-    let walls = Table::of_walls(&run.moment());
-    let [torque, spin, work] = ["torque", "omega", "work"].map(|name| numbers(&walls, name)[0]);
-    let wall_work = run.observables().wall_work;
-    // Steps take contacts where they began, tables where grains are at the end: they have moved by Δt·v of the radius.
-    assert!((work - wall_work).abs() < 5e-3 * wall_work.abs(), "{work} {wall_work}");
-    assert!((work + 1e-3 * torque * spin).abs() < 1e-9 * work.abs(), "{work} {torque} {spin}");
+    // A drum's torque times its spin is its work, and nearly what steps say: a step counts the inward part ½ω²Δt·R of
+    // the wall's mean velocity as well, which is of first order in Δt.
+    let off = |time_step_secs: f64| {
+        let mut drum = scene("drum");
+        drum.parameters.time_step_secs = time_step_secs;
+        let mut run = drum.simulation().expect("a scene");
+        run.take_steps((0.2 / time_step_secs).round() as u64).expect("finite states");
+        let walls = Table::of_walls(&run.moment());
+        let [torque, spin, work] = ["torque", "omega", "work"].map(|name| numbers(&walls, name)[0]);
+        let by_torque = -time_step_secs * torque * spin;
+        assert!((work - by_torque).abs() < 1e-9 * work.abs(), "{work} {torque} {spin}");
+        (work - run.observables().wall_work).abs() / work.abs()
+    };
+    let offs = [1e-3, 2.5e-4, 1e-4].map(off);
+    assert!(offs[0] < 0.05 && offs[1] < 0.4 * offs[0], "{offs:?}");
 }
 
 #[test]
 fn walls_have_the_work_and_torque_of_all_steps_between_two_frames() {
-    // The works are those of steps, but of a wall that a force drives, which has two speeds in a step, as in biaxial.
-    for (name, bond, off_by) in
-        [("vibrated", 0.0, 1e-10), ("biaxial", 0.0, 5e-3), ("drum", 10.0, 1e-9)]
-    {
+    // The works are those of steps, but of a wall that a force drives, which has two speeds in a step, as in biaxial. Of a
+    // wall that turns, the table takes the slip along it at the end of each step, and steps at its beginning.
+    for (name, bond, time_step_secs, off_by, off_torque) in [
+        ("vibrated", 0.0, 1e-3, 1e-10, 0.0),
+        ("biaxial", 0.0, 1e-3, 5e-3, 0.0),
+        ("drum", 10.0, 1e-3, 1e-5, 0.02),
+        ("drum", 10.0, 2.5e-4, 2.5e-6, 0.005),
+    ] {
         let mut scene = scene(name);
-        scene.parameters.time_step_secs = 1e-3;
+        scene.parameters.time_step_secs = time_step_secs;
         scene.parameters.bond = bond;
         let mut run = scene.simulation().expect("a scene");
-        run.take_steps(200).expect("finite states");
+        let steps_in = |secs: f64| (secs / time_step_secs).round() as u64;
+        run.take_steps(steps_in(0.2)).expect("finite states");
         let mut sums = ForceSums::default();
         sums.follow(&run);
         let (mut works, mut size) = (0.0, 0.0);
-        for _ in 0..40 {
+        for _ in 0..steps_in(0.04) {
             let work = run.step().expect("a finite state").wall_work;
             works += work;
             size += work.abs();
@@ -439,60 +448,10 @@ fn walls_have_the_work_and_torque_of_all_steps_between_two_frames() {
             let [torque, spin] =
                 ["mean_torque", "omega"].map(|name| numbers(&frame.walls, name)[0]);
             let by_torque = -0.04 * torque * spin;
-            assert!((by_torque - found[0]).abs() < off_by * works.abs(), "{by_torque} {found:?}");
+            assert!(
+                (by_torque - found[0]).abs() < off_torque * works.abs(),
+                "{by_torque} {found:?}"
+            );
         }
     }
-}
-
-#[test]
-fn a_shear_without_fluctuations_has_no_kinetic_pressure() {
-    let run = scene("shear-periodic").simulation().expect("a scene");
-    let pressure = numbers(&Table::of_measures(&run.moment()), "kinetic_pressure")[0];
-    let energy = run.observables().kinetic_energy;
-    assert!(energy > 0.0 && pressure < 1e-12 * energy, "{pressure} N/m of {energy} J");
-}
-
-#[test]
-fn pairs_that_are_open_and_bear_nothing_are_no_contacts() {
-    let mut scene = scene("shear-periodic");
-    (scene.stepper, scene.parameters.bond) = (Stepper::Range, 0.0);
-    scene.parameters.time_step_secs = 1e-3;
-    let mut run = scene.simulation().expect("a scene");
-    run.take_steps(100).expect("finite states");
-    let contacts = Table::of_contacts(&run.moment());
-    let [gaps, forces] = ["gap", "normal_force"].map(|name| numbers(&contacts, name));
-    let touch = 1e-3 * run.world().mean_diameter;
-    assert!(!gaps.is_empty(), "contacts");
-    assert!(gaps.iter().zip(&forces).all(|(&gap, &force)| gap < touch || force != 0.0), "{gaps:?}");
-}
-
-#[test]
-fn a_grain_goes_straight_on_through_borders_where_it_is_unwrapped() {
-    let mut scene = scene("shear-periodic");
-    scene.grains.truncate(1);
-    let velocity = DVec2::new(3.0, -2.0);
-    scene.grains[0].velocity = velocity;
-    if let Some(cell) = &mut scene.periodic {
-        cell.shear_rate = 0.0;
-    }
-    let mut run = scene.simulation().expect("a scene");
-    let from = run.moment().grains[0].position;
-    run.take_steps(3000).expect("finite states");
-    let now = Table::of_grains(&run.moment());
-    let unwrapped = vectors(&now, ["x_unwrapped", "y_unwrapped"])[0];
-    let gone = run.time_secs() * velocity;
-    assert!((unwrapped - from).distance(gone) < 1e-9, "{unwrapped}");
-    assert!(vectors(&now, ["x", "y"])[0].distance(from) < 0.2, "it stays in the cell");
-}
-
-#[test]
-fn grains_without_weight_are_told_of() {
-    for (name, count) in [("shear", 228), ("shear-periodic", 224), ("biaxial", 300)] {
-        let facts = slump::config::scene_facts(&scene(name)).expect("facts").facts;
-        let said = facts.iter().find(|(name, _)| name == "weightless").map(|(_, said)| said);
-        let begins = format!("{count} of {count} grains: ");
-        assert!(said.is_some_and(|said| said.starts_with(&begins)), "{said:?}");
-    }
-    let facts = slump::config::scene_facts(&scene("pile")).expect("facts").facts;
-    assert!(facts.iter().all(|(name, _)| name != "weightless"));
 }

@@ -58,7 +58,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     assert_eq!(robot.notice(), format!("Saved {}", path.display()), "the whole path");
     let (texts, size) = texts(&path);
     assert_eq!(size, [640, 400]);
-    assert!(texts["Settings"].contains("--bond 35 --dt 0.002"), "{texts:?}");
+    assert!(texts["Settings"].contains("--bond 35 --bond-acceleration 0 --dt 0.002"), "{texts:?}");
     assert_eq!((texts["Scene"].as_str(), texts["Time"].as_str()), ("pile", "0.01 s"));
     assert_eq!(texts.get("Changes"), None);
     // The command comes to the same state: its last row is that of the window.

@@ -39,15 +39,10 @@ impl Contact {
     }
 
     /// The gap of the pair where its bodies are now, m, or nothing where another feature touches the grain instead.
-    pub(crate) fn gap_now(
-        &self,
-        world: &World,
-        candidates: &Candidates,
-        axes: usize,
-    ) -> Option<f64> {
+    pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
         let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
         let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
-        approach(world, candidates, position, radius, other, axes).map(|(_, gap)| gap)
+        approach(world, near, position, radius, other, axes).map(|(_, gap)| gap)
     }
 }
 

@@ -217,11 +217,6 @@ impl Scene {
                 return Err(Error::value(format!("grains[{index}]"), found, "finite throughout"));
             }
             within_reach(format_args!("grains[{index}].position"), grain.position, grain.radius)?;
-            if !self.physics.rotation && grain.angular_velocity != 0.0 {
-                let field = format!("grains[{index}].angular_velocity");
-                let allowed = "0 unless physics.rotation is true";
-                return Err(Error::value(field, grain.angular_velocity, allowed));
-            }
         }
         let mean = 2.0 * self.grains.iter().map(|grain| grain.radius).sum::<f64>()
             / self.grains.len() as f64;

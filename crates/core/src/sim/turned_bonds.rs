@@ -2,7 +2,8 @@
 //!
 //! A step takes normals from its beginning, and grains go straight. Let two grains with v_n = 0 circle each other with
 //! ω, their centres L apart. At the end of the step they are L √(1 + ω²Δt²) apart: the gap has grown by ½ω²Δt²·L. If a
-//! bond lives while the gap is below zero, turning ends it after some steps, though it could bear far more than the pull.
+//! bond lives while the gap is below zero, turning ends it after some steps, though it could bear far more than the
+//! pull.
 //!
 //! A bond counts as ended so if all of this is true of a contact of the step:
 //!

@@ -213,7 +213,11 @@ mod tests {
         assert_eq!(text("Title"), "pile, t = 0.25 s");
         let command = "slump --headless --scene pile --bond 33.5 --theme dark";
         assert_eq!(text("Command line"), command);
-        assert!(text("Settings").contains("--bond 33.5 --dt 0.001"), "{}", text("Settings"));
+        assert!(
+            text("Settings").contains("--bond 33.5 --bond-acceleration 0 --dt 0.001"),
+            "{}",
+            text("Settings")
+        );
         assert!(text("Software").starts_with("slump "));
     }
 

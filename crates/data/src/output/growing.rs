@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::files::is_at;
+use super::locks::is_at;
 use crate::error::{Error, Result};
 
 /// Bytes of a page of memory on most machines, and a part of one on all others.
