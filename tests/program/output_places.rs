@@ -174,12 +174,11 @@ fn a_file_that_is_there_is_kept_unless_it_is_to_be_replaced() {
         assert_eq!(said, expected);
         assert_eq!((read(&out).as_str(), names_in(folder.path()).len()), ("mine", 1), "{line}");
         succeed(slump(line).arg(&out).arg("--overwrite"));
-        let written = bytes(&out);
-        assert!(written.len() > 40, "{line}");
-        // One that holds nothing was made for it.
+        assert!(bytes(&out).len() > 40, "{line}");
+        // An empty file is replaced: nothing is lost with it.
         write(&out, "");
         succeed(slump(line).arg(&out));
-        assert_eq!(bytes(&out).len(), written.len(), "{line}");
+        assert!(bytes(&out).len() > 40, "{line}");
     }
 }
 
