@@ -14,7 +14,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 #[cfg(feature = "window")]
 use crate::app::WindowOptions;
 use crate::config::{Config, parser_of, refusal_of, scene_to_toml, write_discs};
-use crate::error::{Error, Result, check};
+use crate::error::{Error, Result};
 use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use crate::output::{
@@ -153,6 +153,7 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
 
 /// Stack of the first thread that is enough for all commands: runs were seen to need more than 512 KiB and less than 768.
 /// A window that opens a session needs more than 2 MiB, which is no reason to refuse a run: 8 are usual where windows are.
+#[cfg(target_os = "linux")]
 const LEAST_STACK_BYTES: u64 = 1 << 20;
 
 /// Refuses to begin where the stack would overflow, which no program survives.
@@ -161,7 +162,7 @@ fn check_stack() -> Result<()> {
     if let Some(bytes) = rustix::process::getrlimit(rustix::process::Resource::Stack).current {
         let [found, least] = [bytes, LEAST_STACK_BYTES].map(|bytes| bytes >> 10);
         let allowed = format!("at least {least}, as `ulimit -s {least}` makes it");
-        check(found >= least, "the limit on the stack in KiB", found, allowed)?;
+        crate::error::check(found >= least, "the limit on the stack in KiB", found, allowed)?;
     }
     Ok(())
 }

@@ -9,8 +9,7 @@ use std::io::{
 };
 use std::path::{Path, PathBuf};
 
-use super::terminal::note_line;
-use crate::error::{Error, Result, place};
+use crate::error::{Error, Result};
 
 /// A file that has no name yet: on disk, or where there is none in memory.
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,6 +1,6 @@
 //! Folders and files that one run writes at a time.
 
-use std::fs::{File, Metadata, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
 use super::terminal::note_line;
@@ -159,7 +159,7 @@ impl Drop for FolderLock {
 #[cfg(unix)]
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
-    let place = |metadata: Metadata| (metadata.dev(), metadata.ino());
+    let place = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
     let there = std::fs::metadata(path).ok().map(place);
     there.is_some() && file.metadata().ok().map(place) == there
 }
