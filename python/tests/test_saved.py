@@ -27,6 +27,7 @@ def told(sim: slump.Simulation) -> list[object]:
 
 
 @pytest.mark.parametrize("options", RUNS, ids=str)
+@pytest.mark.filterwarnings("ignore::slump.SlumpWarning")
 def test_a_saved_run_goes_on_bit_for_bit(tmp_path: Path, options: dict[str, object]) -> None:
     sim = slump.Simulation(**options)  # type: ignore[arg-type]
     sim.step(40)
@@ -65,6 +66,7 @@ def test_a_saved_run_is_that_of_the_command_line_in_both_directions(tmp_path: Pa
 
 
 @pytest.mark.parametrize("options", RUNS, ids=str)
+@pytest.mark.filterwarnings("ignore::slump.SlumpWarning")
 def test_a_pickle_goes_on_bit_for_bit(options: dict[str, object]) -> None:
     sim = slump.Simulation(**options)  # type: ignore[arg-type]
     sim.step(40)

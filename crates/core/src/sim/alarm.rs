@@ -113,6 +113,8 @@ pub(super) struct Watch {
     are_placed: bool,
     /// Least overlap that there was since grains were placed, in diameters of the smaller disc of the deepest contact.
     placed_overlap: f64,
+    /// Bonds that ended so far because their pairs turned.
+    turned_bonds: u64,
     energy: ContactEnergy,
 }
 
@@ -294,17 +296,22 @@ impl Watch {
         self.add(Alarm { longest_time_step_secs, ..alarm });
     }
 
-    /// Counts bonds that ended in a step because their pairs turned, and raises the alarm of them.
+    /// Counts bonds that ended in a step because their pairs turned, and raises the alarm of them once they are more than
+    /// half as many as the contacts. In most cohesive piles that move a few end so.
     pub(super) fn count_turned_bonds(
         &mut self,
         settings: &Settings,
         observables: &Observables,
         more: u64,
     ) {
+        self.turned_bonds += more;
+        if 2 * self.turned_bonds <= u64::from(observables.contacts) {
+            return;
+        }
         let kind = AlarmKind::TurnedBonds;
         self.add(Alarm::new(kind, observables, advice::on_turned_bonds(settings)));
         for alarm in self.alarms.iter_mut().filter(|alarm| alarm.kind == kind) {
-            alarm.count = Some(alarm.count.unwrap_or(0) + more);
+            alarm.count = Some(self.turned_bonds);
         }
     }
 

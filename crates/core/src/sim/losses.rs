@@ -164,7 +164,6 @@ impl Losses {
     /// Has the ways of all grains begin at these places, m.
     pub(super) fn place(&mut self, positions: &[DVec2]) {
         self.from = positions.to_vec();
-        self.begun = false;
     }
 
     pub(super) fn remove(&mut self, grain: usize) {
