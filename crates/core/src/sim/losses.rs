@@ -36,7 +36,7 @@ pub(super) struct Losses {
     world: Edges,
     /// On a line nothing can slump.
     on_line: bool,
-    /// True where all grains have been looked at since they were placed: some may have been placed in a wall.
+    /// True if all grains have been looked at once: some may have been in a wall from the start.
     begun: bool,
     /// Two points of each wall when it was looked at last, m; none where no motion carries any.
     frames: Vec<[DVec2; 2]>,
