@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The program for Windows, under wine: that it computes, saves, goes on, keeps two runs apart and opens its window.
+# The program for Windows, under wine: it computes, saves, continues, keeps two runs apart and opens its window.
 #
 #   tests/windows.sh PROGRAM.exe [FOLDER]         tries it; a screenshot of the window goes to FOLDER (target/windows)
 #   tests/windows.sh --run PROGRAM.exe ARGUMENTS  starts it

@@ -14,7 +14,7 @@ fn segment(from: f64, to: f64) -> Boundary {
 
 /// A level floor from 0 to 4 m in pieces of 0.1 m.
 fn floors() -> Vec<(&'static str, Vec<Boundary>)> {
-    // The ends of neighbours are equal but for rounding.
+    // The ends of neighbours are equal except for rounding.
     let ends = || (0..40).map(|k| (0.1 * f64::from(k), 0.1 * f64::from(k) + 0.1));
     let polygon = |(left, right): (f64, f64), depth: f64| Boundary::ConvexPolygon {
         points: vec![

@@ -119,7 +119,7 @@ impl Recording {
     /// Checks that [`Recording::go_on`] will find all that it needs.
     ///
     /// # Errors
-    /// As there.
+    /// As those of [`Recording::go_on`].
     pub fn check(
         folder: &Path,
         formats: &[FormatName],

@@ -62,7 +62,7 @@ impl Fields {
     /// Fields of all grains that are not lost, smoothed by a width, m.
     ///
     /// # Errors
-    /// Where the width is none, or so small that there would be too many cells, or a number of the moment is not finite.
+    /// If the width is not a finite length > 0 or would need too many cells, or if a number of the moment is not finite.
     pub fn of(moment: &Moment, width: f64) -> Result<Self> {
         Self::in_box(moment, width, [DVec2::MIN, DVec2::MAX])
     }
