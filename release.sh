@@ -36,7 +36,7 @@ python3 -m venv "$work/tools"
 export PATH=$PATH:$work/tools/bin
 bindgen=$(sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' web/Cargo.lock)
 [ "$(wasm-bindgen --version 2>/dev/null)" = "wasm-bindgen $bindgen" ] ||
-    cargo install wasm-bindgen-cli --version "$bindgen" --locked
+    cargo install wasm-bindgen-cli --version "$bindgen"
 debian() {
     RUSTC_BOOTSTRAP=1 PATH=/usr/bin:$PATH CARGO_TARGET_DIR=$CARGO_TARGET_DIR/debian cargo "$@"
 }
