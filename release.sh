@@ -33,6 +33,7 @@ as_root=()
     libc6-arm64-cross qemu-user wine wine64 xvfb xdotool mmdebstrap nodejs python3-venv
 python3 -m venv "$work/tools"
 "$work/tools/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.9,<2' 'cargo-zigbuild>=0.20' ziglang
+ln -s "$work"/tools/lib/python3*/site-packages/ziglang/zig "$work/tools/bin/zig"
 export PATH=$PATH:$work/tools/bin
 bindgen=$(sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' web/Cargo.lock)
 [ "$(wasm-bindgen --version 2>/dev/null)" = "wasm-bindgen $bindgen" ] ||
