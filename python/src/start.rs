@@ -47,7 +47,7 @@ pub(crate) fn scene(
             let allowed = "left out where initial is a table, which is of one moment";
             return Err(refused("initial-step", step, allowed));
         }
-        return config.scene_of_discs(discs(table)?).map_err(exception);
+        return config.scene_of_discs(discs(table)?).map_err(of_no_file);
     }
     let base = match scene.filter(|scene| is_data(scene)) {
         Some(data) => BaseScene::of(described(data)?, Path::new("")),
@@ -132,9 +132,12 @@ fn discs(table: &Bound<'_, PyAny>) -> PyResult<RecordedGrains> {
         Ok((name, values))
     };
     let columns = names_of(table)?.into_iter().map(named).collect::<PyResult<Vec<_>>>()?;
-    // What is told of as of a file is of no file.
-    let refuse = |error: Error| InputError::new_err(error.to_string());
-    grains_of(Path::new(INITIAL), &columns).map_err(refuse)
+    grains_of(Path::new(INITIAL), &columns).map_err(of_no_file)
+}
+
+/// The exception on a table that is refused in the words for a file.
+fn of_no_file(error: Error) -> PyErr {
+    InputError::new_err(error.to_string())
 }
 
 fn names_of(table: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {

@@ -78,6 +78,22 @@ fn a_negative_number_is_a_value_of_every_option() {
 }
 
 #[test]
+fn only_settings_that_change_nothing_are_told_of_as_such() {
+    let folder = folder();
+    let run = "run cradle --times 0 --duration 0.01 --size 8x8 --renderer cpu --frames out --overwrite --stepper";
+    for (options, unread) in [
+        ("moreau --push-out --max-travel 0.5 --calm-unsolved --sequential-impacts", None),
+        ("range --max-travel 0.5 --debonding-distance 0.02", None),
+        ("dem --stiffness 1e6 --max-sweeps 5", Some("the stepper dem does not read max-sweeps")),
+        ("moreau --push-out --stiffness 1e6", Some("the stepper moreau does not read stiffness")),
+    ] {
+        let said = succeed(slump(&format!("{run} {options}")).current_dir(folder.path()));
+        assert_eq!(said.contains("does not read"), unread.is_some(), "{options}: {said}");
+        assert!(said.contains(unread.unwrap_or_default()), "{options}: {said}");
+    }
+}
+
+#[test]
 fn an_unknown_challenge_is_told_of_with_those_there_are() {
     let said = refusal(&["stability", "heap"]);
     assert!(said.contains("scene is heap, but must be one of column, sag, mass-ratio"), "{said}");

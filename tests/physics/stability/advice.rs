@@ -233,12 +233,46 @@ fn unsolved_steps_are_told_what_solves_them() {
     solved(&heavy, "newton");
 
     let mut strict = paper_pile().expect("the shipped state");
-    strict.parameters.restitution = 0.0;
     let stop = StopTest::Residual;
     strict.solver = SolverSettings { stop, tolerance: 1e-18, ..SolverSettings::default() };
     assert_eq!(limit(&strict), Advice::Tolerance);
     strict.solver.tolerance = 1e-6;
     solved(&strict, "a larger tolerance");
+
+    let mut bouncing = wedged();
+    bouncing.physics = UNTURNING;
+    bouncing.grains[0].velocity = at(0.0, -1.0);
+    (bouncing.parameters.restitution, bouncing.parameters.friction) = (0.9, 2.0);
+    bouncing.solver = solved_by(Method::Nsgs, 1e-8);
+    let (alarm, _) = alarm_of(AlarmKind::SweepLimit, &bouncing, 300);
+    assert_eq!(alarm.advice, Advice::RestitutionThreshold);
+    bouncing.parameters.restitution_threshold = 2.0;
+    assert!(!kinds(&bouncing, 300).contains(&AlarmKind::SweepLimit), "a restitution threshold");
+
+    let mut squeezed = wedged();
+    let inwards = |disc: usize, x: f64| Motion {
+        fixed_discs: vec![disc],
+        course: Some(straight(at(x, 0.0))),
+        ..Motion::default()
+    };
+    squeezed.motions = vec![inwards(0, 0.02), inwards(1, -0.02)];
+    squeezed.solver =
+        SolverSettings { friction_model: FrictionModel::Coulomb, ..SolverSettings::default() };
+    squeezed.solver.method = Method::Newton;
+    assert_eq!(limit(&squeezed), Advice::BoundedFriction);
+    squeezed.solver.method = Method::Auto;
+    squeezed.solver.friction_model = FrictionModel::Tresca;
+    solved(&squeezed, "bounded friction");
+}
+
+/// A disc wedged between two fixed ones so that friction lets it neither leave nor slide.
+fn wedged() -> Scene {
+    let angle = 75f64.to_radians();
+    let touching = 2.0 * RADIUS * (1.0 - 1e-9);
+    let beside = |side: f64| fixed(touching * at(side * angle.sin(), -angle.cos()), RADIUS);
+    let parameters = parameters(0.0, 1e-3, 0.0, 0.9);
+    let fixed_discs = vec![beside(-1.0), beside(1.0)];
+    Scene { fixed_discs, ..under_g(parameters, vec![Grain::at_rest(DVec2::ZERO, RADIUS)]) }
 }
 
 #[test]

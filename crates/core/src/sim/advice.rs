@@ -7,6 +7,10 @@ use crate::sim::steppers::{SpringDashpot, Stepper, stable_substeps};
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic, Physics, World};
 
+/// Tolerance, in any measure, that no step of a pile is solved to. Where a larger one would do, that is what an unsolved step is
+/// told.
+const BELOW_ROUNDING: f64 = 1e-15;
+
 words! {
     /// The change that is most likely to help against an alarm.
     pub enum Advice {
@@ -31,8 +35,8 @@ words! {
             "it no longer counts in slump; if it was to stay, put a wall or a floor in its way";
         BondAcceleration = "bond-acceleration",
             "the cohesion force is Bond·m·g, and g is 0; try a bond-acceleration above 0 m/s²";
-        BondsOfRange = "bonds-of-range", "try the stepper range, whose bonds do not depend on turning";
-        BondsOfDem = "bonds-of-dem", "try the stepper dem, whose bonds do not depend on turning";
+        BondsOfRange = "bonds-of-range", "try the stepper range without remedies: its bonds do not depend on turning";
+        BondsOfDem = "bonds-of-dem", "try the stepper dem without remedies: its bonds do not depend on turning";
         Cohesion = "cohesion", "set cohesion = true under [physics] in the scene file";
     }
 }
@@ -110,6 +114,9 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
     let Settings { stepper, parameters, solver, .. } = settings;
     if !stalled && solver.max_sweeps < SolverSettings::DEFAULT.max_sweeps {
         return Advice::Sweeps;
+    }
+    if solver.tolerance < BELOW_ROUNDING {
+        return Advice::Tolerance;
     }
     let may_bounce = parameters.restitution > 0.0 && parameters.restitution_threshold == 0.0;
     if stalled && may_bounce && stepper.reads("restitution-threshold") {

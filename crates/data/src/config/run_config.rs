@@ -176,9 +176,10 @@ impl Config {
         *self == Self::default()
     }
 
-    /// The names of settings that are given and that a stepper does not read.
+    /// The names of settings that are given and that a stepper does not read. A remedy that it does not take is refused.
     pub fn unread_by(&self, stepper: Stepper) -> Vec<String> {
-        let given = Self { source: SceneSource::default(), stepper: None, ..self.clone() };
+        let (source, remedies) = (SceneSource::default(), RemedyChanges::default());
+        let given = Self { source, stepper: None, remedies, ..self.clone() };
         // Plain data by names: there is nothing that JSON cannot say.
         let given = serde_json::to_value(&given).unwrap_or_default();
         let names = given.as_object().into_iter().flat_map(|given| given.keys());
