@@ -59,11 +59,16 @@ fn a_disc_does_not_feel_where_the_pieces_of_a_floor_meet() {
             ..moving(DVec2::new(0.3, RADIUS), RADIUS, speed * DVec2::X)
         };
         let scene = under_g(parameters(0.0, 1e-3, 0.0, friction), vec![grain]);
-        let mut run = start(&Scene { stepper, boundaries: floor, ..scene });
+        let over =
+            |boundaries: Vec<Boundary>| start(&Scene { stepper, boundaries, ..scene.clone() });
+        let [mut run, mut on_plane] = [over(floor), over(vec![level()])];
         for step in 0..1000 {
             take_steps(&mut run, 1);
+            take_steps(&mut on_plane, 1);
             let off = (run.velocity(0).x - speed).abs();
             assert!(off < 1e-6, "{stepper}, {way} over {name}: {off} m/s in step {step}");
+            let lower = (run.place(0).y - on_plane.place(0).y).abs();
+            assert!(lower < 1e-6, "{stepper}, {way} over {name}: {lower} m in step {step}");
         }
     }
 }

@@ -170,8 +170,12 @@ impl Feature {
     pub(crate) fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
-            Feature::HalfSpace { .. } | Feature::ConvexPolygon { .. } => {
-                self.distance(centre).map_or(f64::INFINITY, |(_, distance)| distance)
+            Feature::HalfSpace { point, shape } => (centre - *point).dot(shape.normal),
+            Feature::ConvexPolygon { sides, .. } => {
+                let (_, depth) = way_out(sides, centre);
+                let distances =
+                    sides.iter().map(|side| side.distance_to_local_point(centre, false));
+                if depth <= 0.0 { depth } else { distances.fold(f64::INFINITY, f64::min) }
             }
         }
     }
@@ -209,14 +213,8 @@ impl Feature {
                 Some(outward(centre, nearest.point, left_of(shape)))
             }
             Feature::ConvexPolygon { sides, seams } => {
-                // Inside, the way out is through the side whose line is nearest. Outside, the
-                // surface's nearest point is that of the nearest side.
-                let depth = |side: &Segment| (centre - side.a).dot(-left_of(side));
-                let deepest = sides.iter().map(|side| (depth(side), -left_of(side)));
-                let (depth, normal) =
-                    deepest.fold((f64::NEG_INFINITY, DVec2::ZERO), |most, next| {
-                        if next.0 > most.0 { next } else { most }
-                    });
+                // Outside, the surface's nearest point is that of the nearest side.
+                let (normal, depth) = way_out(sides, centre);
                 if depth <= 0.0 {
                     return Some((normal, depth));
                 }
@@ -234,6 +232,16 @@ impl Feature {
             }
         }
     }
+}
+
+/// The normal and the distance, m, of the side of a convex polygon whose line is nearest to a place inside: the way out. The
+/// distance is above 0 outside.
+fn way_out(sides: &[Segment], place: DVec2) -> (DVec2, f64) {
+    let lines = sides.iter().map(|side| (-left_of(side), (place - side.a).dot(-left_of(side))));
+    lines.fold(
+        (DVec2::ZERO, f64::NEG_INFINITY),
+        |most, next| if next.1 > most.1 { next } else { most },
+    )
 }
 
 /// The unit normal on the left of a segment; inward for the side of an anticlockwise polygon.

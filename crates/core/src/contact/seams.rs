@@ -210,7 +210,8 @@ mod tests {
         ];
         for floor in floors {
             let all = features(floor.clone());
-            for x in [0.9, 1.0 - 1e-6, 1.0, 1.0 + 1e-6, 1.1] {
+            let near_one = (-4..=4).map(|ulps| 1.0 + f64::from(ulps) * f64::EPSILON);
+            for x in [0.9, 1.0 - 1e-6, 1.0 + 1e-6, 1.1].into_iter().chain(near_one) {
                 let touched = touched_from(&all, x, 0.5);
                 let near = touched.iter().filter(|at| at.distance(DVec2::new(x, 0.0)) < 0.2);
                 assert_eq!(near.clone().count(), 1, "{floor:?} from {x}: {touched:?}");
