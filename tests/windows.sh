@@ -81,7 +81,13 @@ export DISPLAY=:$(cat display)
 wine "$program" --bond 20 >/dev/null 2>log &
 for _ in $(seq 600); do xdotool search --name Slump >/dev/null 2>&1 && break; sleep 0.1; done
 xdotool search --name Slump >/dev/null || fail "no window opens"
-sleep 8
-import -window root "$shots/windows.png"
+# Before the first frame the screen is black.
+for _ in $(seq 60); do
+    sleep 1
+    import -window root "$shots/windows.png"
+    brightness=$(convert "$shots/windows.png" -format '%[fx:mean]' info:)
+    if awk "BEGIN { exit !($brightness > 0.5) }"; then break; fi
+done
+awk "BEGIN { exit !($brightness > 0.5) }" || fail "the window stays black: $shots/windows.png"
 kill "$server"
 echo "tried under wine; the window is in $shots/windows.png"

@@ -41,27 +41,30 @@ pub(super) struct WindowSurface {
 }
 
 impl WindowSurface {
-    /// Opens the strongest device that can draw on the window: on Vulkan, or else on OpenGL, or on the
-    /// one that is asked for.
+    /// Opens the strongest device that can draw on the window: on Vulkan, or else on what the system
+    /// has, or else on OpenGL; or on the one that is asked for.
     pub(super) fn new(
         events: &ActiveEventLoop,
         window: &Arc<Window>,
         renderer: RendererChoice,
     ) -> Result<Self> {
         // Each kind is tried by itself: a driver that is there but cannot draw on this display
-        // must not keep the other from being found. `WGPU_BACKEND` overrides the choice.
+        // must not keep the other from being found. `WGPU_BACKEND` overrides the choice. Under Wine, Direct3D 12 opens and
+        // then draws nothing, so it comes after Vulkan.
+        let of_system = wgpu::Backends::PRIMARY;
         let first = match renderer {
-            RendererChoice::Auto => wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY),
+            RendererChoice::Auto => wgpu::Backends::from_env().unwrap_or(wgpu::Backends::VULKAN),
             RendererChoice::Vulkan => {
                 return Self::with_backends(events, window, wgpu::Backends::VULKAN);
             }
-            RendererChoice::Gl => wgpu::Backends::GL,
+            RendererChoice::Gl => return Self::with_backends(events, window, wgpu::Backends::GL),
             RendererChoice::Cpu => {
                 let allowed = "auto, vulkan or gl for the window (cpu with --headless)";
                 return Err(Error::value("renderer", "cpu", allowed));
             }
         };
         Self::with_backends(events, window, first)
+            .or_else(|_| Self::with_backends(events, window, of_system))
             .or_else(|_| Self::with_backends(events, window, wgpu::Backends::GL))
     }
 
