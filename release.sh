@@ -136,7 +136,7 @@ name=slump-$version-$intel
 tar -C "$tried" -xf "$out/$name.tar.gz"
 run=(run pile --bond 20 --dt 1e-3 --times 0.1 --size 480x270 --renderer cpu)
 (cd "$tried/tmp" && env -i "../$name/slump" "${run[@]}" --frames plain) || fail "the program does not run with env -i"
-env -i chroot "$tried" "/$name/slump" "${run[@]}" --frames /tmp/old || fail "the program does not run on Debian 11"
+chroot "$tried" /usr/bin/env -i "/$name/slump" "${run[@]}" --frames /tmp/old || fail "the program does not run on Debian 11"
 for folder in plain old; do
     for file in manifest.json observables.csv; do
         [ -s "$tried/tmp/$folder/$file" ] || fail "the program left no $file"
