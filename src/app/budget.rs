@@ -1,14 +1,8 @@
 //! The budget of the solver: how well steps are solved at first, what else is one click away, and what to try.
 
-use crate::config::Config;
-use crate::scene::Scene;
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic};
-
-/// Piles of more grains begin with sweeps that are counted, so that they move before one's eyes: a certified step of 1,000
-/// grains that slump takes some 20 ms, one of 2,000 some 70, and 40 sweeps on it take 5.
-pub(super) const MOST_SOLVED_GRAINS: usize = 800;
 
 /// A way to solve steps that has a name.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +29,8 @@ impl Budget {
 /// Forty sweeps, by all cores.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
-    hint: "40 sweeps a step, solved or not, for large piles, whose slump hardly feels it; that of a small pile may be \
-           off by a tenth. A step of 10,000 grains takes some 10 ms.",
+    hint: "40 sweeps a step, solved or not: some 10 ms for 10,000 grains. Without cohesion large piles slump nearly as they do \
+           in solved steps. With cohesion piles fall that stand if they are solved, and small piles are off by a tenth.",
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 
@@ -51,7 +45,7 @@ pub(super) const PAPER: Budget = Budget {
 /// Coulomb's law itself.
 pub(super) const COULOMB: Budget = Budget {
     name: "Coulomb",
-    hint: "Coulomb's law itself, by Newton's method, at a higher cost than Certified. For some steps it finds no \
+    hint: "Coulomb's law itself, by Newton's method, at a higher cost than Solved. For some steps it finds no \
            solution, and strong piles feel what is left of these.",
     settings: SolverSettings {
         friction_model: FrictionModel::Coulomb,
@@ -61,28 +55,15 @@ pub(super) const COULOMB: Budget = Budget {
 };
 
 /// What everything begins with.
-pub(super) const CERTIFIED: Budget = Budget {
-    name: "Certified",
-    hint: "Each step is solved within bounds of friction that sweeps give (tresca), and velocities are \
-           certain to 1e-4 of the root of g d. Slumps are those of Coulomb's law where that is solved.",
+pub(super) const SOLVED: Budget = Budget {
+    name: "Solved",
+    hint: "Each step is solved within bounds of friction that sweeps give (tresca). Where a pile flows, velocities differ \
+           from those of Coulomb's law by a hundredth of the root of g d or two. Slumps are those of Coulomb's law where that is solved.",
     settings: SolverSettings::DEFAULT,
 };
 
 /// All of them.
-pub(super) const BUDGETS: [Budget; 4] = [FAST, CERTIFIED, COULOMB, PAPER];
-
-/// What a pile of that many grains begins with.
-pub(super) fn for_grains(grains: usize) -> Budget {
-    if grains <= MOST_SOLVED_GRAINS { CERTIFIED } else { FAST }
-}
-
-/// What a scene begins with whose user says nothing of how well its steps are to be solved: a pile what suits its
-/// size, every other what it says itself.
-pub(super) fn complete(scene: &mut Scene) {
-    if scene.name == Config::DEFAULT_SCENE && scene.solver == SolverSettings::default() {
-        scene.solver = for_grains(scene.grains.len()).settings;
-    }
-}
+pub(super) const BUDGETS: [Budget; 4] = [FAST, SOLVED, COULOMB, PAPER];
 
 /// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`docs/paper.md`, Fig. 5a); beyond it need not.
 const WEAK: f64 = 50.0;

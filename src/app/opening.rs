@@ -10,7 +10,6 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::IN_BROWSER;
-use super::budget;
 use super::export::STATE_ENDING;
 use super::lessons::LESSONS;
 use super::session::{SESSION_ENDING, open_session};
@@ -59,14 +58,12 @@ impl StartSource for Opening {
     fn make(self: Box<Self>, tell: Tell<'_>) -> Result<LiveStart> {
         match *self {
             Self::Scene(config) => {
-                let mut scene = settled(&config, tell)?;
-                budget::complete(&mut scene);
+                let scene = settled(&config, tell)?;
                 start(&scene, *config)
             }
             Self::Lesson(at) => {
                 let lesson = &LESSONS[at.min(LESSONS.len() - 1)];
-                let (config, mut scene) = lesson.scene()?;
-                budget::complete(&mut scene);
+                let (config, scene) = lesson.scene()?;
                 let worlds = (lesson.worlds)(scene.settings());
                 let start = start(&scene, config)?;
                 let zoomed = lesson.view.map(|view| view.map(|end| scene.mean_diameter * end));

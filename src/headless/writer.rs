@@ -329,7 +329,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     note_line(legible(&format!(
         "{} (Bond {}, time step {} s): {unconverged_steps} of {steps} steps did not reach tolerance \
          {:e} within {} sweeps, {stalled_steps} of them stalled (more sweeps would be of no \
-         use); velocities are off by {:.2} mm/s at most",
+         use); velocities are off by some {:.2} mm/s at most",
         scene.name,
         scene.parameters.bond,
         scene.parameters.time_step_secs,

@@ -146,14 +146,6 @@ fn a_line_scene_off_its_line_is_refused() {
         |s| s.physics.friction = false,
         "physics.rotation is true, but must be false where physics.friction is false",
     );
-    let spinning = |scene: &mut Scene| {
-        scene.physics = UNTURNING;
-        scene.grains[1].angular_velocity = -2.5;
-    };
-    check(
-        spinning,
-        "grains[1].angular_velocity is -2.5, but must be 0 rad/s where physics.rotation is false",
-    );
 }
 
 #[test]

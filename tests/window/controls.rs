@@ -237,28 +237,33 @@ fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
 }
 
 #[test]
-fn piles_of_more_than_800_grains_begin_with_40_sweeps_and_it_is_told() {
-    for (grains, is_fast) in [(800, false), (801, true), (2_000, true)] {
-        let source = SceneSource {
-            scene: Some("pile".into()),
-            grains: Some(grains),
-            box_width: Some(2.2 * (grains as f64).sqrt()),
-            deposition: Some(Deposition::DropAndRoll),
-            ..SceneSource::default()
-        };
-        let mut robot = Robot::open(Config { source, ..Config::default() });
-        let Settings { solver, .. } = robot.settings();
-        let sweeps = (solver.method == Method::NsgsParallel).then_some(solver.max_sweeps);
-        assert_eq!(sweeps, is_fast.then_some(40), "{grains} grains: {solver:?}");
-        robot.take_steps(1);
-        robot.harness.get_by_label_contains("Can I trust this?").click();
-        robot.frames(5);
-        assert_eq!(robot.shows(&format!("A step of {grains} grains gets 40 sweeps")), is_fast);
-    }
+fn piles_of_every_size_begin_with_solved_steps_and_what_fast_leaves_is_told() {
+    let source = SceneSource {
+        scene: Some("pile".into()),
+        grains: Some(1_000),
+        box_width: Some(70.0),
+        deposition: Some(Deposition::DropAndRoll),
+        ..SceneSource::default()
+    };
+    let mut robot = Robot::open(Config { source, ..Config::default() });
+    assert_eq!(robot.settings().solver, slump::solver::SolverSettings::default());
+    robot.take_steps(1);
+    robot.harness.get_by_label_contains("Can I trust this?").click();
+    robot.frames(5);
+    assert!(robot.shows("All 1 step are solved as asked"));
+    robot.clicks(&["Law, solver", "Fast"]);
+    robot.take_steps(1);
+    robot.frames(5);
+    assert!(
+        robot.shows(
+            "A step gets 40 sweeps, solved or not: velocities of the last one are off by some"
+        )
+    );
+    assert!(robot.shows("With cohesion piles fall so that stand if they are solved"));
 }
 
 #[test]
-fn a_large_pile_is_solved_with_a_certificate() {
+fn a_large_pile_is_solved() {
     let source = SceneSource {
         grains: Some(2_100),
         box_width: Some(61.0),
@@ -266,8 +271,8 @@ fn a_large_pile_is_solved_with_a_certificate() {
         ..SceneSource::default()
     };
     let mut robot = Robot::open(Config { source, ..Config::default() });
-    robot.clicks(&["Law, solver", "Certified"]);
+    robot.clicks(&["Law, solver", "Solved"]);
     robot.take_steps(1);
     let last = robot.observables();
-    assert!(last.converged && last.velocity_error < 1e-4, "{last:?}");
+    assert!(last.converged, "{last:?}");
 }

@@ -248,7 +248,7 @@ mod tests {
         assert_eq!(titles(&[base, range.over(1e-4)]), ["moreau, Δt 1e-3 s", "range, Δt 1e-4 s"]);
         let few = SolverSettings { method: Method::Nsgs, max_sweeps: 5, ..SolverSettings::PAPER };
         let few = Settings { solver: few, ..base };
-        assert_eq!(titles(&[few, base]), ["nsgs, 5 sweeps", "Certified"]);
+        assert_eq!(titles(&[few, base]), ["nsgs, 5 sweeps", "Solved"]);
         let mut other = base;
         (other.parameters.restitution, other.parameters.friction) = (0.5, 0.3);
         assert_eq!(titles(&[base, other]), ["ρ 0, μ 0", "ρ 0.5, μ 0.3"]);

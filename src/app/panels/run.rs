@@ -5,13 +5,11 @@ use egui::{Align, Button, RichText, Ui};
 use super::compare::title_among;
 use super::gallery;
 use super::grain::compact;
-use crate::app::budget;
 use crate::app::sharing::CHANGED;
 use crate::app::state::AppState;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES};
-use crate::solver::SolverChanges;
 
 /// Most grains that the panel offers; the command line takes more.
 const MOST_GRAINS: usize = 20_000;
@@ -21,6 +19,8 @@ const MOST_GRAINS: usize = 20_000;
 const LARGE: usize = 2_000;
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;
+/// A solved step of that many grains that slump, ms.
+const STEP_MILLIS: f64 = 60.0;
 /// How the grains of a new pile are put in place.
 const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     (
@@ -140,10 +140,10 @@ fn cost(grains: usize) -> String {
     let part = grains as f64 / LARGE as f64;
     let minutes = (RAIN_SECS * part.powf(1.25) / 60.0).ceil();
     let secs = ROLL_SECS * part.powf(1.8);
-    let most = budget::MOST_SOLVED_GRAINS;
+    let step_millis = STEP_MILLIS * part.powf(1.3);
     format!(
-        "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. Steps of more than {most} begin with \
-         Fast, 40 sweeps."
+        "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. A step takes some {step_millis:.0} ms; \
+         under Fast, for piles without cohesion, a twentieth of that."
     )
 }
 
@@ -161,12 +161,7 @@ fn pile_like_this(state: &AppState, pile: &NewPile) -> Config {
     };
     let config = Config { source, ..state.config.clone() };
     let Some(Controls { settings, .. }) = state.wanted.get(state.selected) else { return config };
-    let (now, Some(world)) = (settings.solver, state.world()) else { return config };
-    let begun_with = budget::for_grains(world.snapshot.grains.len()).settings;
-    let config = config.with_settings(settings);
-    // Whoever has left that choice to the window leaves it for the new size, too.
-    let solver = if now == begun_with { SolverChanges::default() } else { config.solver };
-    Config { solver, ..config }
+    config.with_settings(settings)
 }
 
 /// Width of the fields of names, points.

@@ -202,10 +202,10 @@ fn readings(ui: &mut Ui, state: &AppState) {
     }
 }
 
-/// How far velocities may be off, rounded up.
+/// About how far velocities are off, rounded up.
 fn within(last: &Observables) -> String {
     let rounded_up = (1e5 * last.velocity_error).ceil().max(1.0) / 100.0;
-    format!("velocities within {} mm/s", compact(rounded_up))
+    format!("velocities off by some {} mm/s", compact(rounded_up))
 }
 
 /// How the last step was solved; the status bar counts those that were not solved as asked.

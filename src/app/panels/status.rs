@@ -102,9 +102,10 @@ pub(super) fn alarms(state: &AppState) -> Vec<String> {
     selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
-/// True where an alarm says what was chosen with open eyes: so many sweeps a step, solved or not. How many steps were
-/// not solved is told under "Can I trust this?" in any case.
+/// True where an alarm says what was chosen with open eyes: so many sweeps a step, solved or not, of a pile without cohesion.
+/// With cohesion such steps break bonds, and it is told.
 fn is_asked_for(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let fast = FAST.among(&world.snapshot.surroundings);
-    alarm.kind == AlarmKind::SweepLimit && world.controls.settings.solver == fast
+    let crate::sim::Settings { parameters, solver, .. } = world.controls.settings;
+    alarm.kind == AlarmKind::SweepLimit && solver == fast && parameters.bond == 0.0
 }

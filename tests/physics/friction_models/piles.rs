@@ -144,7 +144,7 @@ fn falling(model: FrictionModel, bond: f64, time_step_secs: f64, restitution: f6
 }
 
 #[test]
-fn every_step_of_a_pile_that_slumps_is_certified() {
+fn every_step_of_a_pile_that_slumps_is_solved_within_its_model() {
     for model in CONVEX {
         for (bond, time_step_secs, restitution) in
             [(0.0, 1e-3, 0.2), (20.0, 1e-3, 0.9), (100.0, 5e-3, 0.2), (0.0, 5e-3, 0.9)]
@@ -156,7 +156,6 @@ fn every_step_of_a_pile_that_slumps_is_certified() {
                 let row = *run.step().expect("a finite state");
                 assert!(row.converged, "{what}, step {step}: {:?}", row.model_residual);
                 assert!(row.model_residual.is_some_and(|residual| residual <= 1e-8), "{what}");
-                assert!(row.velocity_error < 1e-4, "{what}, step {step}: {row:?}");
                 factorisations.push(row.factorisations);
             }
             assert!(run.observables().slump > 1e-3, "{what}: it slumps");
@@ -167,46 +166,57 @@ fn every_step_of_a_pile_that_slumps_is_certified() {
     }
 }
 
-/// The bound on the velocities' error, m/s: the root of Σ m (σ(w + 2z) + z² + g|v| + λv) over the mass of what touches, from
-/// world data, as `solver::problem::residual` states it.
-fn error_of_world(run: &Simulation, pile: &Scene, bounds: &[f64], before: &Simulation) -> f64 {
-    let mut gap = 0.0;
-    let friction = pile.parameters.friction;
+/// The error of the velocities against Coulomb's law, m/s, from world data, as `solver::problem::velocity_error` states it: the
+/// root of the gap over the mass of what touches, and how far all has to move for contacts to lack nothing.
+fn errors_of_world(run: &Simulation, pile: &Scene, before: &Simulation) -> [f64; 2] {
+    let (mut gap, mut touches) = (0.0, vec![false; run.grains().len()]);
+    let grains = run.grains().len();
     let impulses = run.contacts().impulses();
-    let judged = judge(run, before.grains());
-    for ((contact, impulse), bound) in judged.iter().zip(impulses).zip(bounds) {
-        let p = impulse.normal + contact.cohesion_impulse;
-        let rebound = pile.parameters.restitution * contact.before[0];
-        let (mut w, v) = (contact.after[0] + rebound, contact.after[1]);
-        let least = match pile.solver.friction_model {
-            FrictionModel::Coulomb => 0.0,
-            FrictionModel::Desaxce => {
-                w += friction * contact.before[1].abs();
-                friction * v.abs()
-            }
-            _ => friction * v.abs(),
-        };
-        let lacking = (least - w).max(0.0);
-        gap += p * (w + 2.0 * lacking) + bound * v.abs() + impulse.tangential * v;
-        gap += contact.normal_mass * lacking * lacking;
+    let contacts = run.contacts().contacts();
+    let is_fixed = |other: u32| other as usize >= grains;
+    let fixed = contacts.iter().filter(|contact| is_fixed(contact.other));
+    let up = fixed.map(|contact| contact.normal).sum::<DVec2>().normalize_or_zero();
+    let (mut squares, mut counts) = ([0.0; 2], [0.0; 2]);
+    for ((state, impulse), contact) in
+        judge(run, before.grains()).iter().zip(impulses).zip(contacts)
+    {
+        let p = impulse.normal + state.cohesion_impulse;
+        let w = state.after[0] + pile.parameters.restitution * state.before[0];
+        let (v, t, mass) = (state.after[1], impulse.tangential, state.normal_mass);
+        let lacking = (-w).max(0.0);
+        let bound = pile.parameters.friction * p.max(0.0);
+        let outside = (t.abs() - bound).max(0.0);
+        gap += p * (w + 2.0 * lacking) + mass * lacking * lacking;
+        gap += bound * v.abs() + (t - outside * t.signum()) * v;
+        gap += outside * (v.abs() + outside / mass);
+        let along = contact.normal.dot(up);
+        let kind = usize::from(!(is_fixed(contact.other) && along >= 0.1));
+        squares[kind] += if kind == 0 { lacking / along } else { lacking }.powi(2);
+        counts[kind] += 1.0;
+        touches[contact.grain as usize] = true;
+        if !is_fixed(contact.other) {
+            touches[contact.other as usize] = true;
+        }
     }
-    let grains = run.grains();
-    let touches = |grain: &usize| {
-        run.contacts()
-            .contacts()
-            .iter()
-            .any(|contact| contact.grain as usize == *grain || contact.other as usize == *grain)
-    };
-    let mass: f64 = (0..grains.len()).filter(touches).map(|grain| grains.masses[grain]).sum();
-    (gap / mass).sqrt()
+    let places = before.grains().positions.iter().zip(&touches).filter(|(_, touches)| **touches);
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for (&place, _) in places {
+        (low, high) = (low.min(place), high.max(place));
+    }
+    let in_a_row = (1.0 + (high - low).max_element() / pile.mean_diameter).min(grains as f64);
+    let [along, between] = [0, 1].map(|kind| (squares[kind] / f64::max(counts[kind], 1.0)).sqrt());
+    let masses = run.grains().masses.iter().zip(&touches);
+    let mass: f64 = masses.filter(|(_, touches)| **touches).map(|(mass, _)| mass).sum();
+    [(gap / mass).sqrt(), along + in_a_row * between]
 }
 
 #[test]
-fn the_bound_on_the_velocities_is_what_world_data_make_it() {
-    for model in [FrictionModel::Associated, FrictionModel::Desaxce, FrictionModel::Coulomb] {
+fn the_error_of_the_velocities_is_what_world_data_make_it() {
+    let mut kinds = [0; 2];
+    for (model, sweeps) in pairs(FrictionModel::SOLVED, [1, 2, 4]) {
         let mut pile = pressed_pile(30, 0.3, 11, parameters(2.0, 1e-6, 0.3, 0.5));
         // Far from solved, so that the gap is far above rounding.
-        pile.solver = SolverSettings { max_sweeps: 2, ..by_interior_point(model, 1e-8) };
+        pile.solver = SolverSettings { max_sweeps: sweeps, ..by_interior_point(model, 1e-8) };
         pile.solver.method = Method::Nsgs;
         let mut run = after(&pile, 3);
         let before = run.clone();
@@ -214,33 +224,29 @@ fn the_bound_on_the_velocities_is_what_world_data_make_it() {
         let pairs = |run: &Simulation| -> Vec<_> {
             run.contacts().contacts().iter().map(|c| (c.grain, c.other)).collect()
         };
-        assert_eq!(pairs(&before), pairs(&run), "bounds are those of the same contacts");
-        let bounds: Vec<f64> = match model {
-            // Those that the impulses have themselves.
-            FrictionModel::Coulomb => {
-                let judged = judge(&run, before.grains());
-                let impulses = run.contacts().impulses().iter();
-                let normal = impulses.zip(&judged).map(|(p, c)| p.normal + c.cohesion_impulse);
-                normal.map(|normal| 0.5 * normal.max(0.0)).collect()
-            }
-            _ => vec![0.0; before.contacts().impulses().len()],
-        };
-        let error = error_of_world(&run, &pile, &bounds, &before);
-        assert!(error > 1e-6, "{model}: {error:e}");
-        assert_close(row.velocity_error, error, 1e-9, &format!("{model}"));
+        assert_eq!(pairs(&before), pairs(&run), "velocities are judged at the same contacts");
+        let [of_gap, of_way] = errors_of_world(&run, &pile, &before);
+        // The rest is rounding: before `tresca` come fifty sweeps.
+        if of_gap.is_nan() || of_gap < 1e-6 {
+            continue;
+        }
+        println!("{model}, {sweeps} sweeps: {of_gap:e}, {of_way:e}");
+        assert_close(
+            row.velocity_error,
+            of_gap.max(of_way),
+            1e-9,
+            &format!("{model}, {sweeps} sweeps"),
+        );
+        kinds[usize::from(of_way > of_gap)] += 1;
     }
+    assert!(kinds[0] > 0 && kinds[1] > 0 && kinds[0] + kinds[1] > 5, "{kinds:?} of both kinds");
 }
-
-/// m/s. The largest of 4,500 steps of such piles was 0.35.
-const BOUND_PER_ROOT_OF_RESIDUAL: f64 = 0.5;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    // The gap that the bound is the root of is impulses times what they err by. Of two solves the nearer one may have the
-    // larger bound: 1.8e-5 m/s with a residual of 0.9e-8, where one of 1.1e-8 had 1.6e-5.
     #[test]
-    fn the_bound_on_the_velocities_falls_with_the_root_of_the_residual(
+    fn every_convex_model_is_solved_to_every_tolerance(
         seed in 0u64..1000,
         bond in prop_oneof![Just(0.0), 0.0..50.0],
         restitution in 0.0..1.0,
@@ -259,8 +265,6 @@ proptest! {
             prop_assert!(row.converged, "{row:?} at {tolerance:e}");
             let residual = row.model_residual.expect("a model of its own");
             prop_assert!(residual <= tolerance, "{residual:e} at {tolerance:e}");
-            let (error, most) = (row.velocity_error, BOUND_PER_ROOT_OF_RESIDUAL * residual.sqrt());
-            prop_assert!(error <= most.max(1e-7), "{error:e} with a residual of {residual:e}");
         }
     }
 }

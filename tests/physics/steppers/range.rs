@@ -400,7 +400,6 @@ fn under_bounds_of_friction_no_piece_of_a_step_is_left_unsolved() {
             let row = run.step().expect("a finite state");
             unsolved += u32::from(!row.converged);
             factorisations = factorisations.max(row.factorisations);
-            assert!(solver.friction_model == FrictionModel::Coulomb || row.velocity_error < 5e-5);
         }
         assert!(bond > 20.0 || run.observables().slump > 0.1, "Bond {bond}: it slumps");
         (unsolved, factorisations)

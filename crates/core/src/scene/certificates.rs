@@ -1,7 +1,6 @@
-//! No certificate is wrong. Over scenes, steppers, friction, restitution and time steps the bound on the velocities' error is
-//! what the rows' data make it, summed here anew, and of a solve that ends by it no less than the distance from the
-//! solution. Of one that is given up far from there it may be less (`solver::problem::residual`): after three sweeps from
-//! nothing at a column of 20 discs by a factor of four.
+//! What a solve ends by is no less than the distance from the solution: over scenes, steppers, friction, restitution and
+//! time steps it is what the rows' data make it, summed here anew, or more where contacts lack something
+//! (`solver::problem::velocity_error`).
 
 use crate::contact::ContactList;
 use crate::number::Parts;
@@ -9,7 +8,7 @@ use crate::scene::{SCENES, stability};
 use crate::sim::{ProblemVisitor, Settings, Simulation, Stepper};
 use crate::solver::{
     Memory, Method, Model, SolverSettings, StepProblem, residual, solve, solve_within_bounds,
-    velocity_error,
+    velocity_distance, velocity_error,
 };
 
 /// Larger scenes say no more, and take longer.
@@ -41,12 +40,11 @@ impl ProblemVisitor for Certified {
             solve_within_bounds(&mut exact, &tight).converged.then_some(exact)
         });
         let (gap, mass) = gap(problem);
-        let told = velocity_error(problem).bound;
+        let told = velocity_error(problem).told;
         let found = if gap > 0.0 { (gap / mass).sqrt() } else { 0.0 };
-        let distance = exact.filter(|_| report.converged && mass > 0.0).map(|exact| {
-            let squared = squared_distance(problem, &exact) / mass;
-            squared.sqrt() - velocity_error(&exact).bound
-        });
+        let distance = exact
+            .filter(|_| report.converged && mass > 0.0)
+            .map(|exact| velocity_distance(problem, &exact) - velocity_error(&exact).told);
         Certificate { told, found, distance }
     }
 }
@@ -80,19 +78,6 @@ fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     (gap, masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum())
 }
 
-/// ‖V − V*‖²_M, J.
-fn squared_distance<M: Model>(one: &StepProblem<M>, other: &StepProblem<M>) -> f64 {
-    let pairs = one.bodies.now.iter().zip(&other.bodies.now).zip(&one.bodies.masses);
-    pairs
-        .map(|((one, other), mass)| {
-            let [one, other] = [one, other].map(M::coordinates);
-            let along =
-                |axis: usize| M::INERTIA_OVER_MASS[axis] * (one[axis] - other[axis]).powi(2);
-            mass * (0..M::DEGREES).map(along).sum::<f64>()
-        })
-        .sum()
-}
-
 /// All that a scene is run with.
 fn variants(settings: Settings) -> impl Iterator<Item = Settings> {
     let steppers = [Stepper::Moreau, Stepper::Range];
@@ -118,6 +103,7 @@ fn no_certificate_is_wrong() {
     };
     let certified = SolverSettings::default();
     let (mut problems, mut driven, mut nearest) = (0, 0, 0f64);
+    let (mut all, mut more) = (0, 0);
     for info in SCENES {
         let scene = (info.make)().expect("a scene");
         if scene.grains.len() > MOST_GRAINS {
@@ -137,10 +123,10 @@ fn no_certificate_is_wrong() {
                     let Certificate { told, found, distance } = run.next_problem(Certified(solver));
                     let Settings { stepper, parameters, .. } = settings;
                     let what = format!("{}, {stepper}, {parameters:?}, step {step}", info.name);
-                    assert!(
-                        (told - found).abs() <= 1e-6 * told + 1e-7,
-                        "{what}: {told:e}, {found:e}"
-                    );
+                    let rounding = 1e-6 * told + 1e-7;
+                    assert!(told >= found - rounding, "{what}: {told:e}, {found:e}");
+                    more += u32::from(told > found + rounding);
+                    all += 1;
                     let Some(distance) = distance else { continue };
                     let rounding = 1e-9 * (1.0 + told);
                     assert!(distance <= told + rounding, "{what}: {distance:e} off, {told:e} told");
@@ -154,6 +140,7 @@ fn no_certificate_is_wrong() {
             }
         }
     }
+    println!("{more} of {all} solves are told more of than their gap");
     println!(
         "{problems} problems, {driven} of them driven, distances up to {nearest} of what is told"
     );

@@ -216,11 +216,6 @@ impl Scene {
                 let found = format!("{grain:?}");
                 return Err(Error::value(format!("grains[{index}]"), found, "finite throughout"));
             }
-            if grain.angular_velocity != 0.0 && !self.physics.rotation {
-                let field = format!("grains[{index}].angular_velocity");
-                let allowed = "0 rad/s where physics.rotation is false";
-                return Err(Error::value(field, grain.angular_velocity, allowed));
-            }
             within_reach(format_args!("grains[{index}].position"), grain.position, grain.radius)?;
         }
         let mean = 2.0 * self.grains.iter().map(|grain| grain.radius).sum::<f64>()

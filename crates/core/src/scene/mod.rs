@@ -6,6 +6,8 @@ mod certificates;
 mod deposition;
 mod description;
 pub mod experiments;
+#[cfg(test)]
+mod law_errors;
 mod paper;
 mod preset;
 mod registry;

@@ -39,8 +39,9 @@ pub struct Observables {
     /// dimensionless; none under that law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_residual: Option<f64>,
-    /// A bound on the velocities' error, m/s: root mean square over the grains that touch something, of a model
-    /// against its solution. Under Coulomb's law, against the solution under the bounds that the impulses have.
+    /// How far the velocities are taken to be from those that Coulomb's law asks for, whatever was solved, m/s: root mean
+    /// square over the grains that touch something, weighted with mass
+    /// ([`VelocityError`](crate::solver::VelocityError)).
     #[serde(default)]
     pub velocity_error: f64,
     /// All contacts, with grains and with fixed shapes.

@@ -94,7 +94,7 @@ pub struct Tally {
     /// Largest common residual of any step.
     #[serde(with = "number")]
     pub largest_residual: f64,
-    /// Largest bound on the velocities' error of any step, m/s.
+    /// Largest estimate of the velocities' error of any step, m/s.
     #[serde(with = "number", default)]
     pub largest_velocity_error: f64,
     /// Mean over the steps of the mean overlap, in units of d.

@@ -4,6 +4,7 @@
 //! * `problem/`: the problem's data, how it is set up, and its residual.
 //! * `method`, `settings`: the methods by name, and how well a step is to be solved.
 //! * `methods/`: what solves a problem, a file or folder a method. `solve` picks from them.
+//! * `solutions`: the solutions that a step has, from several starts.
 //! * `onlooker`: who sees how far a long solve is.
 //! * `linear/`: the sparse factorisations that some of them use.
 //! * `delassus/`: problems in the Delassus operator alone.
@@ -17,6 +18,7 @@ mod model;
 mod onlooker;
 mod problem;
 mod settings;
+mod solutions;
 mod solve;
 
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
@@ -40,4 +42,5 @@ pub use problem::{
     VelocityError, for_each_row, measure, relative_velocities, residual, velocity_error, worst,
 };
 pub use settings::{FrictionModel, SolverChanges, SolverSettings, StopTest};
+pub use solutions::{Solution, SolutionSearch, velocity_distance};
 pub use solve::solve;

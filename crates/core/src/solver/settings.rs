@@ -14,7 +14,7 @@ words! {
         Residual = "residual", "the residual that judges all methods";
         #[default]
         VelocityError = "velocity-error",
-            "a bound on the root mean square of the velocities' error, over √(g d) together with what contacts undo";
+            "how far velocities are off in the root mean square, over √(g d) together with what contacts undo";
     }
 }
 
@@ -63,8 +63,8 @@ impl FrictionModel {
 settings! {
     /// Method, stopping test and limits. Plain data, checked where a simulation takes them on.
     ///
-    /// By default each step is solved with a certificate: within bounds of friction, to velocities that differ from
-    /// those of the solution by no more than a share of √(g d) that no slump of a pile feels.
+    /// By default each step is solved within bounds of friction, to velocities that differ from those of the solution by a
+    /// share of √(g d) that no slump of a pile feels. Coulomb's law may have others ([`Measures::velocity_error`](super::Measures)).
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Method that solves each step", {

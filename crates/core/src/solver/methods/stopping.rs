@@ -90,7 +90,7 @@ pub(in crate::solver) fn sweep_until_settled<P>(
 }
 
 /// True where the stopping test is met after a sweep that made this change, by a mean mass (kg) of the
-/// grains, by Σ P² ((N·s)²), by the residual, or by the bound on the velocities' error.
+/// grains, by Σ P² ((N·s)²), by the residual, or by the velocities' error.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,

@@ -9,6 +9,7 @@ mod order;
 mod residual;
 mod rows;
 mod solved;
+mod velocity_error;
 mod walls;
 
 use glam::DVec2;
@@ -19,17 +20,18 @@ pub(crate) use self::friction::{
 };
 use self::order::RowOrder;
 pub use self::residual::{
-    Measures, RowVelocities, VelocityError, for_each_row, measure, relative_velocities, residual,
-    velocity_error, worst,
+    Measures, RowVelocities, for_each_row, measure, relative_velocities, residual, worst,
 };
 pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
 pub(crate) use self::solved::{is_solved, squared_impulse, squared_impulses};
+pub use self::velocity_error::{VelocityError, velocity_error};
 pub(crate) use self::walls::MovingWalls;
 pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, MovingSurfaces, Surface};
 use super::kinematics::Model;
-use super::settings::SolverSettings;
+use super::settings::{FrictionModel, SolverSettings};
 use crate::contact::{Contact, ContactLaw, ContactList, Impulse, Numbering, Other, law};
+use crate::number::Parts;
 use crate::threads;
 use crate::world::{FrictionCone, World};
 
@@ -54,6 +56,10 @@ pub struct StepProblem<M: Model> {
     /// Which bodies have contacts, and their mass, kg; empty where all have.
     pub(super) touches: Vec<bool>,
     pub(super) touching_mass: f64,
+    /// The longest side of what touches, in mean diameters; 0 where places are not known.
+    pub(super) extent: f64,
+    /// The direction of the sum of the normals of contacts with fixed bodies; 0 if it has none.
+    pub(super) way_out: DVec2,
     pub(super) order: RowOrder,
     /// √m_ij of the rows, kg^½, for methods that work on scaled variables.
     pub(super) root_masses: Vec<f64>,
@@ -116,6 +122,7 @@ impl<M: Model> StepProblem<M> {
         }
         self.fill_rows(world, contacts, fixed, settings.warm_start, &rebound);
         self.find_what_touches();
+        self.find_extent(world);
         if let Some(surfaces) = surfaces {
             self.add_surfaces(contacts, &rebound, surfaces);
         }
@@ -206,15 +213,50 @@ impl<M: Model> StepProblem<M> {
         *touching_mass = masses.map(|(mass, touches)| if *touches { *mass } else { 0.0 }).sum();
     }
 
+    /// Is solved under Coulomb's law from now on, from the impulses that it has, brought into its cone.
+    pub fn take_coulombs_law(&mut self) {
+        self.friction.model = FrictionModel::Coulomb;
+        self.friction.now.clear();
+        if M::FRICTION {
+            let law = self.law;
+            for row in self.rows.iter_mut() {
+                let bound = law.friction_bound(row.shifted_impulse);
+                row.tangential_impulse = law::coulomb(row.tangential_impulse, bound);
+            }
+            self.form_velocities();
+        }
+    }
+
+    /// Notes how far what touches extends, and which way leads off the fixed bodies.
+    fn find_extent(&mut self, world: &World) {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for (&place, touches) in world.grains.positions.iter().zip(&self.touches) {
+            if *touches {
+                (low, high) = (low.min(place), high.max(place));
+            }
+        }
+        let longest = (high - low).max_element().positive_part();
+        self.extent = 1.0 + longest / world.mean_diameter;
+        let normals = self.rows.fixed.iter().map(|row| DVec2::from(M::components(row.normal)));
+        self.way_out = normals.sum::<DVec2>().normalize_or_zero();
+    }
+
+    /// About how many grains pass a push on from one to the next at most.
+    fn grains_in_a_row(&self) -> f64 {
+        let grains = self.bodies.masses.len() as f64;
+        if self.extent > 0.0 { self.extent.min(grains) } else { grains.sqrt() }
+    }
+
     /// Has errors of velocities held against what they are in a problem of which this one has some rows.
     pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
         self.fall_speed = whole.fall_speed;
         self.touches.clone_from(&whole.touches);
         self.touching_mass = whole.touching_mass;
+        (self.extent, self.way_out) = (whole.extent, whole.way_out);
     }
 
     /// The mass of the bodies that have contacts, kg.
-    fn touching_mass(&self) -> f64 {
+    pub(super) fn touching_mass(&self) -> f64 {
         if self.touches.is_empty() { self.bodies.masses.iter().sum() } else { self.touching_mass }
     }
 

@@ -1,31 +1,10 @@
-//! The residual that is common to all methods, the work of the contact forces, and how far from its least value
-//! a convex model's energy is.
-//!
-//! **A bound on the velocities.** With impulses p that a model allows and the velocities V that they make, let w and v
-//! of each contact be those of the model (`problem::friction`) and z ≥ 0 what w lacks of the allowed ones: w + z ≥ 0
-//! within lagged bounds g, w + s + z ≥ μ|v| on the cone. The velocities V solve the dual of a problem in which z is
-//! added to w, and there the two energies differ by
-//!
-//! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
-//!
-//! each term ≥ 0. Since (p − p*)·H(V − V*) is ‖V − V*‖²_M, with p* and V* those of the solution, and no contact there lacks
-//! anything, ‖V − V*‖²_M is at most that sum and Σ m_ij z(σ* − σ). Nobody knows σ*. It is taken for no more than 2σ + z, twice
-//! the present impulse and what would end the lack of the contact by itself, which adds Σ m_ij z(σ + z): without z², a
-//! light disc that a heavy one has just driven into the floor, whose contact carries next to nothing yet, would be
-//! solved. In what still moves much a sweep it may be more. Over the mass of the grains that touch something the sum
-//! bounds the mean square of the velocities' error.
-//!
-//! A wall that a force drives is one more body, whose mass counts in ‖V − V*‖²_M and not in the mean: w and v are relative to
-//! it as it goes now, whatever of them is its own to undo (`problem::walls`).
-//!
-//! Coulomb's law has no dual. There g is the bound μσ that the impulses have themselves: V* is then the solution under
-//! these bounds, and the gap is 0 where Coulomb's law is solved and nowhere else.
+//! The residual that is common to all methods, and the work of the contact forces.
 
 use std::ops::Range;
 
+use super::velocity_error::ErrorSums;
 use super::{FrictionProjection, Row, StepProblem, squared_impulse, with_projection};
 use crate::contact::{ContactLaw, Lanes, law};
-use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 use crate::threads;
@@ -38,8 +17,8 @@ pub struct Measures {
     /// The natural map of the model of friction that was solved, likewise; none under Coulomb's law, whose
     /// it is already.
     pub model_residual: Option<f64>,
-    /// How far the velocities are from those of the solution, m/s: a bound on the root mean square over the grains
-    /// that touch something. Of a model of friction; under Coulomb's law, of the bounds that the impulses have.
+    /// How far the velocities are from those that Coulomb's law asks for, whatever was solved, m/s: an estimate of the root
+    /// mean square over the grains that touch something, weighted with mass ([`VelocityError`](super::VelocityError)).
     pub velocity_error: f64,
     /// Contacts with P_n > 0.
     pub compressive_contacts: u32,
@@ -164,12 +143,12 @@ pub fn worst(one: f64, other: f64) -> f64 {
 // Compiled once, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
-    type Sum = (Sums, GapSums, Measures);
-    let visit = |(sums, gap, measures): &mut Sum,
+    type Sum = (Sums, ErrorSums, Measures);
+    let visit = |(sums, of_law, measures): &mut Sum,
                  (number, row): (usize, &Row<_>),
                  motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
-        gap.add(problem, number, row, &motion);
+        of_law.add_by_law(problem, number, row, &motion);
         let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
         measures.compressive_contacts += u32::from(normal > 0.0);
@@ -184,12 +163,12 @@ pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
             measures.border_work += row.effective_mass * work;
         }
     };
-    let join = |all: &mut Sum, (sums, gap, measures)| {
+    let join = |all: &mut Sum, (sums, of_law, measures)| {
         all.0.add_all(sums);
-        all.1.add_all(gap);
+        all.1.add_all(of_law);
         all.2.add_rows(measures);
     };
-    let (sums, gap, mut measures) = sum_of_rows(problem, visit, join);
+    let (sums, of_law, mut measures) = sum_of_rows(problem, visit, join);
     if problem.has_moving_walls() {
         let [whole, tangential_part] = problem.surface_works();
         measures.wall_work = whole;
@@ -197,7 +176,7 @@ pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
     }
     let residual = sums.residual::<M>(problem);
     let model_residual = model_residual(problem, residual);
-    let velocity_error = gap.error(problem).bound;
+    let velocity_error = of_law.error(problem);
     Measures { residual, model_residual, velocity_error, ..measures }
 }
 
@@ -297,102 +276,10 @@ impl Sums {
     }
 }
 
-/// How far velocities are from those of a solution, and what that is to be held against.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VelocityError {
-    /// A bound on the root mean square of the velocities' error over the grains that touch something, m/s.
-    pub bound: f64,
-    /// The root of g d, d the mean diameter, and of the mean square of what contacts undo, together, m/s.
-    pub scale: f64,
-}
-
-impl VelocityError {
-    /// True where the bound is no larger than a share of the scale. Not a number is not.
-    pub(crate) fn is_within(self, share: f64) -> bool {
-        self.bound <= share * self.scale
-    }
-}
-
-/// The bound on the velocities' error of a problem, from its duality gap; 0 where nothing touches.
-pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
-    let add = |sums: &mut GapSums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
-        sums.add(problem, number, row, &motion);
-    };
-    sum_of_rows(problem, add, GapSums::add_all).error(problem)
-}
-
-/// What the duality gap is made of, and what it is held against, J.
-#[derive(Default)]
-struct GapSums {
-    gap: f64,
-    /// Σ m_ij (v^free)² with v^free as in the residual.
-    undone: f64,
-    /// Σ m_ij |λ|².
-    impulses: f64,
-}
-
-impl GapSums {
-    fn add_all(&mut self, other: Self) {
-        self.gap += other.gap;
-        self.undone += other.undone;
-        self.impulses += other.impulses;
-    }
-
-    #[inline(always)]
-    fn add<M: Model>(
-        &mut self,
-        problem: &StepProblem<M>,
-        number: usize,
-        row: &Row<M>,
-        motion: &RowVelocities,
-    ) {
-        let model = problem.friction.model;
-        let on_cone = M::FRICTION && model.is_on_cone();
-        let [shifted, tangential] = row.impulse();
-        let lagged = match problem.friction.now.get(number) {
-            Some(&lagged) if model != FrictionModel::Coulomb => lagged,
-            _ if on_cone => 0.0,
-            _ => problem.law.friction_bound(shifted),
-        };
-        let [normal, across] = motion.now;
-        let opening = normal + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
-        let least = if on_cone { problem.law.friction * across.abs() } else { 0.0 };
-        let lacking = (least - opening).positive_part();
-        let mut of_contact = shifted * (opening + 2.0 * lacking) + lacking * lacking;
-        if M::FRICTION {
-            of_contact += tangential * across;
-            if !on_cone {
-                of_contact += lagged * across.abs();
-            }
-        }
-        let free = motion.free[0] + row.restitution_velocity;
-        let mut squared = free * free;
-        if M::FRICTION {
-            squared += motion.free[1] * motion.free[1] / M::TANGENTIAL_COMPLIANCE;
-        }
-        self.gap += row.effective_mass * of_contact;
-        self.undone += row.effective_mass * squared;
-        self.impulses += row.effective_mass * (shifted * shifted + tangential * tangential);
-    }
-
-    fn error<M: Model>(&self, problem: &StepProblem<M>) -> VelocityError {
-        let mass = problem.touching_mass();
-        // What rounding left of the impulses is no gap.
-        let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;
-        let squared = if is_rounding { 0.0 } else { self.gap / mass };
-        let undone = if mass > 0.0 { self.undone / mass } else { 0.0 };
-        VelocityError {
-            // What rounding leaves of a gap of 0 may be negative; not a number stays none.
-            bound: if squared < 0.0 { 0.0 } else { squared.sqrt() },
-            scale: (problem.fall_speed * problem.fall_speed + undone).sqrt(),
-        }
-    }
-}
-
 /// Where nothing would move without contacts, errors of up to this share of the impulses are what
 /// rounding left, and no residual. Smaller: methods that scale impulses would not have solved a step in
 /// which nothing happens; larger: errors would go unseen.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 
 /// What that leaves of errors, N·s.
 pub(super) fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
@@ -421,7 +308,7 @@ pub fn for_each_row<M: Model>(
 
 /// Adds up what rows come to, in stretches of one length: `visit` adds a row to the sum of its stretch, `join` that of
 /// the next stretch to those before.
-fn sum_of_rows<M: Model, S: Default + Send>(
+pub(super) fn sum_of_rows<M: Model, S: Default + Send>(
     problem: &StepProblem<M>,
     visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,
     join: impl Fn(&mut S, S),

@@ -222,12 +222,12 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
             return self.report;
         }
         self.go_back();
-        let of_path = velocity_error(self.problem).bound;
+        let of_path = velocity_error(self.problem).told;
         // Where no velocities satisfy all contacts at once, impulses grow without bound along the path, and nothing is
         // gained. Where that came far nearer to a solution, it was asked for more than rounding allows.
         self.problem.write_impulses(self.workspace.first.iter().copied());
         if !self.settles_in(SWEEPS_INSTEAD)
-            && of_path < FAR_NEARER * velocity_error(self.problem).bound
+            && of_path < FAR_NEARER * velocity_error(self.problem).told
         {
             self.go_back();
         }
