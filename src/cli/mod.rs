@@ -16,7 +16,9 @@ use crate::app::WindowOptions;
 use crate::config::{Config, parser_of, refusal_of, scene_to_toml, write_discs};
 use crate::error::{Error, Result};
 use crate::headless::{HeadlessOptions, settled};
-use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
+use crate::interchange::{
+    FoundSolution, ProblemFile, Solution, problem_file_at, solutions_of_file, solve_file,
+};
 use crate::output::{
     Progress, Signal, caught_signal, check_new_file, heed_signals, ignore_file_size_signal,
     lost_stdout, note_line, note_printed, print_line, print_text, resolved, warn_of_steps,
@@ -25,7 +27,8 @@ use crate::output::{
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
 use crate::sim::Stepper;
 use crate::solver::{
-    FrictionModel, METHODS, Method, SolveProgress, SolverSettings, StopTest, look_on,
+    FrictionModel, METHODS, Method, SolutionSearch, SolveProgress, SolverSettings, StopTest,
+    look_on,
 };
 use crate::threads::check_threads;
 use studies::StudyCommand;
@@ -321,6 +324,10 @@ enum ProblemCommand {
         /// Solve it this many times and give the least time
         #[arg(long, value_name = "N", default_value_t = 1)]
         repeat: u32,
+        /// Look for solutions of Coulomb's law from this many starts (the file's impulses, none, then random ones), and say how
+        /// far apart they are
+        #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "without_bodies", value_parser = clap::value_parser!(u32).range(..=1000))]
+        starts: u32,
         /// Work on W alone, whether or not the file has bodies
         #[arg(long)]
         without_bodies: bool,
@@ -361,6 +368,7 @@ impl ProblemCommand {
                 tolerance,
                 max_sweeps,
                 repeat,
+                starts,
                 without_bodies,
                 out,
                 overwrite,
@@ -390,6 +398,11 @@ impl ProblemCommand {
                 let solution = solve_file(&problem, &settings, repeat)?;
                 let signal = caught_signal().filter(|_| !solution.converged);
                 print_solution(&solution, max_sweeps, signal);
+                if starts > 0 && signal.is_none() {
+                    let max_sweeps = max_sweeps.min(MOST_SWEEPS_FROM_A_START);
+                    let search = SolutionSearch { starts, seed: 1, max_sweeps, tolerance };
+                    print_found(&solutions_of_file(&problem, &search)?, starts);
+                }
                 if let Some(out) = out {
                     write_file(&out, solution.text().as_bytes())?;
                 }
@@ -404,6 +417,31 @@ impl ProblemCommand {
 
 /// Sweeps from which on a solve says how far it is. Fewer: short solves say so, too.
 const LONG_SOLVE_SWEEPS: u32 = 4_096;
+
+/// Sweeps from each start at the most: what is not near a solution then hardly gets there.
+const MOST_SWEEPS_FROM_A_START: u32 = 200_000;
+
+/// Prints what several starts led to.
+fn print_found(found: &[FoundSolution], starts: u32) {
+    let solved = found.iter().filter(|solution| solution.is_solved).count();
+    print_line(format_args!("starts          {starts}, under Coulomb's law"));
+    print_line(format_args!("solutions       {solved}"));
+    for (number, solution) in (1..).zip(found) {
+        let FoundSolution { residual, is_solved, starts, distances, farthest, .. } = solution;
+        let starts: Vec<_> = starts.iter().map(|start| (start + 1).to_string()).collect();
+        let name = if *is_solved { "solution" } else { "not solved" };
+        print_line(format_args!(
+            "  {number}: {name}, residual {residual:.1e}, from start {}",
+            starts.join(", ")
+        ));
+        for (other, distance) in (1..).zip(distances) {
+            print_line(format_args!("     root mean square from {other}: {distance:.2e} m/s"));
+        }
+        if let ((grain, off), false) = (farthest, distances.is_empty()) {
+            print_line(format_args!("     most from 1: grain {grain}, by {off:.2e} m/s"));
+        }
+    }
+}
 
 /// Says how far a long solve is, and ends it where a signal came.
 fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {

@@ -93,6 +93,32 @@ fn only_settings_that_change_nothing_are_told_of_as_such() {
     }
 }
 
+/// A step of the shipped pile that has two solutions; grain 82 tells them apart.
+#[test]
+fn a_step_with_two_solutions_is_told_to_have_them() {
+    let folder = folder();
+    let problem = |line: &str| {
+        let output = run(slump(line).current_dir(folder.path()));
+        assert!(output.status.success(), "{line}: {}", said(&output));
+        String::from_utf8(output.stdout).expect("text")
+    };
+    problem("problem dump --bond 0 --dt 1e-3 --at 0.15 --restitution-threshold 2 --out step.json");
+    let said = problem("problem solve step.json --method nncg --starts 8");
+    for part in ["starts          8,", "solutions       2\n", "most from 1: grain 82, by 7.0"] {
+        assert!(said.contains(part), "{said}");
+    }
+    problem(
+        "problem dump --bond 100 --dt 1e-3 --at 0.15 --restitution-threshold 2 --out standing.json",
+    );
+    let said = problem("problem solve standing.json --method nncg --starts 8");
+    assert!(said.contains("solutions       1\n") && !said.contains("most from"), "{said}");
+    let said = refusal(&["problem", "solve", "unread.json", "--starts", "2", "--without-bodies"]);
+    assert!(
+        said.contains("--starts is given, but must be left out where --without-bodies is"),
+        "{said}"
+    );
+}
+
 #[test]
 fn an_unknown_challenge_is_told_of_with_those_there_are() {
     let said = refusal(&["stability", "heap"]);

@@ -9,10 +9,12 @@
 //! problems are read as well (`siconos`).
 
 mod bodies;
+mod several;
 mod siconos;
 mod solution;
 
 pub use bodies::{BodyForm, problem_file_at, problem_file_of};
+pub use several::{FoundSolution, solutions_of_file};
 pub use solution::{Solution, solve_file};
 
 use std::path::Path;

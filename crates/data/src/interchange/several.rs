@@ -1,0 +1,61 @@
+//! The solutions of a problem file under Coulomb's law, from several starts.
+
+use slump_core::with_model;
+
+use super::{BodyForm, ProblemFile};
+use crate::error::{Error, Result};
+use crate::solver::{Model, SolutionSearch, velocity_distance};
+
+/// One of the solutions of a problem file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundSolution {
+    /// The common residual.
+    pub residual: f64,
+    /// True if that is within the tolerance of the search. A result that is not may be near a solution that others led to.
+    pub is_solved: bool,
+    /// The starts that led to it, from 0: the impulses of the file, none, then random ones.
+    pub starts: Vec<u32>,
+    /// How far its velocities are from those of each solution before it, m/s: root mean square, weighted with mass.
+    pub distances: Vec<f64>,
+    /// The grain whose velocity differs most from the first solution, and by how much, m/s.
+    pub farthest: (usize, f64),
+}
+
+/// Looks for solutions of a file's problem.
+///
+/// # Errors
+/// Where the file is at fault, or has no bodies.
+pub fn solutions_of_file(
+    file: &ProblemFile,
+    search: &SolutionSearch,
+) -> Result<Vec<FoundSolution>> {
+    match &file.bodies {
+        Some(bodies) => Ok(with_model!(bodies.parts(file)?, M => find::<M>(bodies, file, search))),
+        None => {
+            let allowed = "left out where a problem is given without bodies";
+            Err(Error::value("starts", search.starts, allowed))
+        }
+    }
+}
+
+fn find<M: Model>(
+    bodies: &BodyForm,
+    file: &ProblemFile,
+    search: &SolutionSearch,
+) -> Vec<FoundSolution> {
+    let solutions = search.find(&bodies.step_problem::<M>(file));
+    let found = solutions.iter().enumerate().map(|(number, solution)| {
+        let now = |at: usize| solutions[at].problem.bodies.now.iter().map(M::coordinates);
+        let apart = now(0).zip(now(number)).map(|([x, y, _], [u, v, _])| (u - x).hypot(v - y));
+        let farthest = apart.enumerate().max_by(|one, other| one.1.total_cmp(&other.1));
+        let before = solutions[..number].iter();
+        FoundSolution {
+            residual: solution.residual,
+            is_solved: solution.residual <= search.tolerance,
+            starts: solution.starts.clone(),
+            distances: before.map(|it| velocity_distance(&it.problem, &solution.problem)).collect(),
+            farthest: farthest.unwrap_or_default(),
+        }
+    });
+    found.collect()
+}
