@@ -23,6 +23,7 @@ mmdebstrap --quiet --variant=minbase --include=ca-certificates,cargo-web,gcc,git
 touch "$root/bare-root"
 # The names of servers, and the certificates that this machine trusts.
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
+rm -rf "$root/etc/ssl/certs"
 cp -rL /etc/ssl/certs "$root/etc/ssl/"
 git clone --quiet . "$root/slump"
 
