@@ -16,7 +16,7 @@ words! {
         InteriorPoint = "interior-point",
             "interior point, sparse direct: the convex models of friction to any tolerance";
         Auto = "auto",
-            "interior-point, certified; under Coulomb's law newton, nncg above 10,000 contacts, nsgs where sweeps are studied";
+            "interior-point; under Coulomb's law newton, nncg above 10,000 contacts, nsgs where sweeps are studied";
     }
 }
 
@@ -170,7 +170,7 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
             ..known(
                 Method::InteriorPoint,
                 OfSettings,
-                "a convex model of friction, with a certificate; Coulomb's law where its path leads there",
+                "a convex model of friction; Coulomb's law where its path leads there",
                 "S. Mehrotra, On the implementation of a primal-dual interior point method (1992)",
             )
         },
@@ -180,7 +180,7 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
             ..known(
                 Method::Auto,
                 OfSettings,
-                "a convex model of friction, with a certificate, or Coulomb's law",
+                "a convex model of friction, or Coulomb's law",
                 "the charts of speed against accuracy",
             )
         },

@@ -1,6 +1,6 @@
 //! `auto`: a method by what a step is solved under, by how it is stopped, and by the size of its problem.
 //!
-//! The convex models of friction are solved by the interior point, which certifies them at any size. Under Coulomb's law
+//! The convex models of friction are solved by the interior point, which solves them at any size. Under Coulomb's law
 //! the choice is that of the charts of speed against accuracy (`slump chart`): Newton's method wins at every residual up
 //! to some hundred discs, and solves more steps than others up to thousands. A stop by the impulses of one sweep
 //! belongs to Gauss–Seidel, whose error is what such a study is about.
