@@ -124,8 +124,17 @@ pub fn wait_for(what: &str, mut is_there: impl FnMut() -> bool) {
 
 /// Sends a signal to a program, or to a group of programs where the number is below 0.
 pub fn send(signal: &str, process: i64) {
-    let id = process.to_string();
-    assert!(Command::new("kill").args(["-s", signal, "--", &id]).status().expect("kill").success());
+    let number = match signal {
+        "HUP" => libc::SIGHUP,
+        "INT" => libc::SIGINT,
+        "KILL" => libc::SIGKILL,
+        "TERM" => libc::SIGTERM,
+        other => panic!("{other} is not among the signals that tests send"),
+    };
+    let process = process.try_into().expect("the number of a process");
+    // SAFETY: `kill` reads nothing but its two numbers.
+    let sent = unsafe { libc::kill(process, number) };
+    assert_eq!(sent, 0, "{signal} to {process}: {}", std::io::Error::last_os_error());
 }
 
 /// Waits until a program has ended, and gives its code.
