@@ -138,7 +138,7 @@ pub const LESSONS: [Lesson; 7] = [
     Lesson {
         title: "The solver's part",
         watch: "The same step, 5 ms, solved by 5 sweeps, by 40 sweeps, and to a tolerance. What sweeps leave unsolved looks \
-                like weaker glue: only the last pile shows what the law says.",
+                like weaker glue. The error of the velocities tells the three apart once the piles come to rest.",
         worlds: |base| {
             let base = base.with_bond(20.0).over(5e-3);
             vec![sweeps(base, 5), sweeps(base, 40), base]

@@ -398,15 +398,16 @@ impl ProblemCommand {
                 let solution = solve_file(&problem, &settings, repeat)?;
                 let signal = caught_signal().filter(|_| !solution.converged);
                 print_solution(&solution, max_sweeps, signal);
+                let mut ended_by = signal;
                 if starts > 0 && signal.is_none() {
-                    let max_sweeps = max_sweeps.min(MOST_SWEEPS_FROM_A_START);
                     let search = SolutionSearch { starts, seed: 1, max_sweeps, tolerance };
                     print_found(&solutions_of_file(&problem, &search)?, starts);
+                    ended_by = caught_signal();
                 }
                 if let Some(out) = out {
                     write_file(&out, solution.text().as_bytes())?;
                 }
-                signal.map_or(Ok(()), |signal| {
+                ended_by.map_or(Ok(()), |signal| {
                     let (exit_code, sweeps) = (signal.exit_code(), solution.sweeps);
                     Err(Error::SolveInterrupted { signal: signal.name(), exit_code, sweeps })
                 })
@@ -417,9 +418,6 @@ impl ProblemCommand {
 
 /// Sweeps from which on a solve says how far it is. Fewer: short solves say so, too.
 const LONG_SOLVE_SWEEPS: u32 = 4_096;
-
-/// Sweeps from each start at the most: what is not near a solution then hardly gets there.
-const MOST_SWEEPS_FROM_A_START: u32 = 200_000;
 
 /// Prints what several starts led to.
 fn print_found(found: &[FoundSolution], starts: u32) {

@@ -150,6 +150,23 @@ pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     (0..grains.len()).map(of).collect()
 }
 
+/// How far the velocities of the first problem of the next step are from those of the model of friction that it is solved
+/// under, by the measure that ends its solve, m/s.
+pub fn error_against_model(simulation: &Simulation) -> f64 {
+    struct OfModel(SolverSettings);
+
+    impl ProblemVisitor for OfModel {
+        type Output = f64;
+
+        fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> f64 {
+            solve(problem, &mut Memory::default(), &self.0);
+            velocity_error(problem).told
+        }
+    }
+
+    simulation.next_problem(OfModel(*simulation.solver()))
+}
+
 pub fn take_steps(simulation: &mut Simulation, count: usize) {
     for _ in 0..count {
         simulation.step().expect("a finite state");

@@ -143,7 +143,7 @@ fn cost(grains: usize) -> String {
     let step_millis = STEP_MILLIS * part.powf(1.3);
     format!(
         "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. A step takes some {step_millis:.0} ms; \
-         under Fast, for piles without cohesion, a twentieth of that."
+         under Fast, for piles without cohesion, a fifteenth of that or less."
     )
 }
 

@@ -7,7 +7,7 @@ use crate::app::budget::FAST;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::{WorldAlarm, WorldFrame};
-use crate::sim::AlarmKind;
+use crate::sim::{AlarmKind, Settings};
 
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -106,6 +106,6 @@ pub(super) fn alarms(state: &AppState) -> Vec<String> {
 /// With cohesion such steps break bonds, and it is told.
 fn is_asked_for(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let fast = FAST.among(&world.snapshot.surroundings);
-    let crate::sim::Settings { parameters, solver, .. } = world.controls.settings;
+    let Settings { parameters, solver, .. } = world.controls.settings;
     alarm.kind == AlarmKind::SweepLimit && solver == fast && parameters.bond == 0.0
 }

@@ -1,4 +1,4 @@
-//! Piles under every convex model: what is solved is the model, has one solution and is certified; and what becomes of a
+//! Piles under every convex model: what is solved is the model, and has one solution; and what becomes of a
 //! step that is not solved under Coulomb's law.
 
 use proptest::prelude::*;
@@ -153,6 +153,8 @@ fn every_step_of_a_pile_that_slumps_is_solved_within_its_model() {
             let mut run = falling(model, bond, time_step_secs, restitution);
             let mut factorisations = Vec::new();
             for step in 0..60 {
+                let error = error_against_model(&run);
+                assert!(error < 1e-4, "{what}, step {step}: {error:e}");
                 let row = *run.step().expect("a finite state");
                 assert!(row.converged, "{what}, step {step}: {:?}", row.model_residual);
                 assert!(row.model_residual.is_some_and(|residual| residual <= 1e-8), "{what}");
@@ -242,11 +244,16 @@ fn the_error_of_the_velocities_is_what_world_data_make_it() {
     assert!(kinds[0] > 0 && kinds[1] > 0 && kinds[0] + kinds[1] > 5, "{kinds:?} of both kinds");
 }
 
+/// m/s. The largest of 4,500 steps of such piles was 0.35.
+const ERROR_PER_ROOT_OF_RESIDUAL: f64 = 0.5;
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
+    // The gap whose root this is, is impulses times what they err by. Of two solves the nearer one may have the larger
+    // error: 1.8e-5 m/s with a residual of 0.9e-8, where one of 1.1e-8 had 1.6e-5.
     #[test]
-    fn every_convex_model_is_solved_to_every_tolerance(
+    fn the_error_against_a_model_falls_with_the_root_of_its_residual(
         seed in 0u64..1000,
         bond in prop_oneof![Just(0.0), 0.0..50.0],
         restitution in 0.0..1.0,
@@ -261,10 +268,13 @@ proptest! {
         for tolerance in [1e-2, 1e-5, 1e-8] {
             let mut next = run.clone();
             next.set_solver(by_interior_point(model, tolerance)).expect("proper settings");
+            let error = error_against_model(&next);
             let row = *next.step().expect("a finite state");
             prop_assert!(row.converged, "{row:?} at {tolerance:e}");
             let residual = row.model_residual.expect("a model of its own");
             prop_assert!(residual <= tolerance, "{residual:e} at {tolerance:e}");
+            let most = ERROR_PER_ROOT_OF_RESIDUAL * residual.sqrt();
+            prop_assert!(error <= most.max(1e-7), "{error:e} with a residual of {residual:e}");
         }
     }
 }

@@ -100,6 +100,7 @@ fn solved(mut scene: Scene) -> Simulation {
 /// Steps, each of them solved, to rest without a contact lost.
 fn stays(mut run: Simulation, what: &str) {
     let contacts = {
+        assert!(error_against_model(&run) < 1e-4, "{what}");
         let row = *run.step().expect("a finite state");
         assert!(row.converged, "{what}");
         row.contacts

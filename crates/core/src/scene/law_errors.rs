@@ -1,4 +1,4 @@
-//! The error of the velocities that is told of a step is near their distance to Coulomb's law, whatever solved the step:
+//! The error of the velocities that a step reports is near their distance to Coulomb's law, whatever solved the step:
 //! over scenes, steppers, friction, restitution, time steps, sizes and methods. The distance is that to the nearest of
 //! the solutions that several starts lead to; with few starts the nearest one may be missed.
 
@@ -11,7 +11,7 @@ use crate::solver::{
 };
 use crate::world::Grain;
 
-/// Distances, in √(g d), that are those of rounding and of what references leave.
+/// Smaller distances, in √(g d), are not judged: what is told of them is known to be too large.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 
 /// One solve: what was told, and how far it was off, in what such errors are held against.
@@ -162,7 +162,7 @@ fn small_scenes() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// Scenes in which much hangs on one contact.
+/// Scenes in which one contact carries much.
 fn hard_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for (radius, friction) in [(1e-3, 0.0), (1.6e-5, 0.0), (1e-3, 0.5)] {
@@ -222,7 +222,7 @@ fn what_is_told_of_a_step_is_near_its_distance_to_coulombs_law() {
 }
 
 #[test]
-#[ignore = "slow, five minutes"]
+#[ignore = "slow, a minute"]
 fn so_it_is_of_large_piles() {
     for (grains, largest_residual) in [(138, 1e-8), (500, 1e-8), (2_000, 1e-3)] {
         let how = Search { starts: 3, max_sweeps: 30_000, largest_residual };

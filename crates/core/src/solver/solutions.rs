@@ -2,22 +2,20 @@
 //!
 //! The law is not convex, so a step of a pile that flows can have several solutions, and where a method starts decides
 //! which of them it finds. Here conjugate gradients start from several impulses: those of the step before, none, and
-//! random ones that the law allows. Newton's method goes on from where they end if that brings it nearer.
+//! random ones that the law allows. Newton's method continues from where they end if that brings it nearer.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::kinematics::Model;
 use super::method::Method;
-use super::methods::Memory;
+use super::methods::{Memory, picked};
 use super::problem::{StepProblem, measure, residual};
-use super::settings::SolverSettings;
+use super::settings::{FrictionModel, SolverSettings};
 use super::solve::solve;
 
 /// Newton's steps at the end of each search at the most.
 const NEWTON_STEPS: u32 = 100;
-/// Contacts above which Newton's method does not try: its matrix fills up.
-const MOST_CONTACTS_FOR_NEWTON: usize = 10_000;
 
 /// How solutions are looked for.
 #[derive(Clone, Copy, Debug)]
@@ -77,10 +75,11 @@ impl SolutionSearch {
         let sweeps = SolverSettings::to_residual(Method::Nncg, self.tolerance, self.max_sweeps);
         let report = solve(&mut found, &mut memory, &sweeps);
         let mut left = residual(&found);
-        if !report.converged && found.rows.len() <= MOST_CONTACTS_FOR_NEWTON && !found.is_driven() {
+        let auto = SolverSettings::to_residual(Method::Auto, self.tolerance, NEWTON_STEPS);
+        let method = picked(&auto, FrictionModel::Coulomb, found.rows.len(), found.is_driven());
+        if !report.converged && method == Method::Newton {
             let mut nearer = found.clone();
-            let newton = SolverSettings::to_residual(Method::Newton, self.tolerance, NEWTON_STEPS);
-            solve(&mut nearer, &mut memory, &newton);
+            solve(&mut nearer, &mut memory, &SolverSettings { method, ..auto });
             let of_nearer = residual(&nearer);
             if of_nearer < left {
                 (found, left) = (nearer, of_nearer);

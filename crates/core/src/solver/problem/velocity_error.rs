@@ -177,7 +177,7 @@ impl ErrorSums {
         self.counts[kind] += 1.0;
     }
 
-    /// The larger of √S over the root of the mass and of f, m/s; not a number where S is none.
+    /// The larger of √S over the root of the mass and of f, m/s; NaN where S is NaN.
     pub(super) fn error<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         // What rounding left of the impulses is no gap.
         let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;
