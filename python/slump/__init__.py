@@ -15,13 +15,14 @@ from __future__ import annotations
 from . import _settings
 from ._budget import Budget, budget
 from ._errors import Error, FileError, InputError, NotFiniteError, SlumpWarning
-from ._slump import Simulation, __version__, methods, options, scene, scenes, solve, steppers
-from ._solution import Solution
+from ._slump import Simulation, __version__, methods, options, scene, scenes, solutions, solve, steppers
+from ._solution import FoundSolution, Solution
 
 __all__ = [
     "Budget",
     "Error",
     "FileError",
+    "FoundSolution",
     "InputError",
     "NotFiniteError",
     "Simulation",
@@ -33,6 +34,7 @@ __all__ = [
     "options",
     "scene",
     "scenes",
+    "solutions",
     "solve",
     "steppers",
 ]

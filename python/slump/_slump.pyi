@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Self, Unpack, disjoint_base
 
-from ._solution import Solution
+from ._solution import FoundSolution, Solution
 
 __all__ = [
     "scene",
@@ -17,6 +17,7 @@ __all__ = [
     "methods",
     "options",
     "scenes",
+    "solutions",
     "steppers",
     "solve",
     "Simulation",
@@ -246,6 +247,12 @@ def _budget(
     within: float | None = None,
     **options: Any,
 ) -> str: ...
+def solutions(
+    problem: _Path | Mapping[str, Any],
+    starts: _Int = 8,
+    tolerance: _Float = 1e-8,
+    max_sweeps: _Int = 1_000_000,
+) -> list[FoundSolution]: ...
 def solve(
     problem: _Path | Mapping[str, Any],
     method: str = "nsgs",

@@ -22,7 +22,7 @@ mod _slump {
     #[pymodule_export]
     use super::options::{_kinds, methods, options, scenes, steppers};
     #[pymodule_export]
-    use super::problems::solve;
+    use super::problems::{solutions, solve};
     #[pymodule_export]
     use super::simulation::{_restored, Simulation};
     #[pymodule_export]

@@ -10,8 +10,10 @@ use pyo3::types::{PyDict, PyString};
 
 use crate::conversion::{exception, refused, rows, text_of};
 use crate::stepping::shared_out;
-use slump_core::solver::{METHODS, Method, SolverSettings, StopTest};
-use slump_data::interchange::{ProblemFile, Solution, solve_file};
+use slump_core::solver::{METHODS, Method, SolutionSearch, SolverSettings, StopTest};
+use slump_data::interchange::{
+    FoundSolution, ProblemFile, Solution, solutions_of_file, solve_file,
+};
 
 /// Between two looks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(20);
@@ -40,6 +42,23 @@ pub(crate) fn solve<'py>(
     let solution = interruptible(py, work)?;
     let solution = solution.map_err(|error| PyOSError::new_err(error.to_string()))?;
     as_python(py, solution.map_err(exception)?)
+}
+
+/// Looks for the solutions that a contact problem has under Coulomb's law, from several starts.
+#[pyfunction]
+#[pyo3(signature = (problem, starts=8, tolerance=1e-8, max_sweeps=1_000_000))]
+pub(crate) fn solutions<'py>(
+    py: Python<'py>,
+    problem: &Bound<'py, PyAny>,
+    starts: u32,
+    tolerance: f64,
+    max_sweeps: u32,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let search = SolutionSearch { starts, seed: 1, max_sweeps, tolerance };
+    let problem = problem_of(problem)?;
+    let found = interruptible(py, move || shared_out(|| solutions_of_file(&problem, &search)))?;
+    let found = found.map_err(|error| PyOSError::new_err(error.to_string()))?;
+    found.map_err(exception)?.into_iter().map(|solution| found_as_python(py, solution)).collect()
 }
 
 fn method_of(name: &str) -> PyResult<Method> {
@@ -110,4 +129,16 @@ fn as_python<'py>(py: Python<'py>, solution: Solution) -> PyResult<Bound<'py, Py
     let bodies = solution.velocities.map(|bodies| rows(py, bodies.into_iter())).transpose()?;
     fields.set_item("body_velocities", bodies)?;
     py.import("slump._solution")?.getattr("Solution")?.call((), Some(&fields))
+}
+
+fn found_as_python<'py>(py: Python<'py>, solution: FoundSolution) -> PyResult<Bound<'py, PyAny>> {
+    let FoundSolution { residual, is_solved, starts, distances, farthest, velocities } = solution;
+    let fields = PyDict::new(py);
+    fields.set_item("residual", residual)?;
+    fields.set_item("is_solved", is_solved)?;
+    fields.set_item("starts", starts)?;
+    fields.set_item("distances", distances)?;
+    fields.set_item("farthest", farthest)?;
+    fields.set_item("body_velocities", rows(py, velocities.into_iter())?)?;
+    py.import("slump._solution")?.getattr("FoundSolution")?.call((), Some(&fields))
 }

@@ -63,6 +63,25 @@ def test_velocities_are_those_of_the_next_step() -> None:
     np.testing.assert_allclose(solution.body_velocities[:, :2], sim.velocities, atol=1e-6)
 
 
+def test_a_step_with_two_solutions_is_found_to_have_them(tmp_path: Path) -> None:
+    file = tmp_path / "step.json"
+    options = ["--bond=0", "--dt=1e-3", "--at=0.15", "--restitution-threshold=2", f"--out={file}"]
+    assert program("problem", "dump", *options).returncode == 0
+    one, other = slump.solutions(file, starts=8)
+    assert one.is_solved and other.is_solved
+    assert sorted(one.starts + other.starts) == list(range(8))
+    assert one.distances == [] and other.distances == [pytest.approx(1.6e-3, rel=0.05)]
+    apart = np.linalg.norm((one.body_velocities - other.body_velocities)[:, :2], axis=1)
+    assert other.farthest == (82, pytest.approx(apart[82])) and apart.argmax() == 82
+    assert len(slump.solutions(file, starts=1)) == 1
+    with pytest.raises(slump.InputError, match="starts is 0, but must be 1 to 1000"):
+        slump.solutions(file, starts=0)
+    with pytest.raises(slump.InputError, match="tolerance is NaN, but must be a finite number > 0"):
+        slump.solutions(file, tolerance=float("nan"))
+    with pytest.raises(slump.InputError, match="must be left out where a problem is given without bodies"):
+        slump.solutions({**json.loads(file.read_text()), "bodies": None})
+
+
 def test_what_is_no_problem_is_told(tmp_path: Path) -> None:
     problem = slump.Simulation("pile").next_problem()
     for given, sentence in [

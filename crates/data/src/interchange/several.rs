@@ -2,9 +2,10 @@
 
 use slump_core::with_model;
 
+use super::solution::body_velocities;
 use super::{BodyForm, ProblemFile};
 use crate::error::{Error, Result};
-use crate::solver::{Model, SolutionSearch, velocity_distance};
+use crate::solver::{Method, Model, SolutionSearch, SolverSettings, velocity_distance};
 
 /// One of the solutions of a problem file.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,16 +20,26 @@ pub struct FoundSolution {
     pub distances: Vec<f64>,
     /// The grain whose velocity differs most from the first solution, and by how much, m/s.
     pub farthest: (usize, f64),
+    /// (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
+    pub velocities: Vec<[f64; 3]>,
 }
+
+/// Starts at the most.
+const MOST_STARTS: u32 = 1_000;
 
 /// Looks for solutions of a file's problem.
 ///
 /// # Errors
-/// Where the file is at fault, or has no bodies.
+/// Where the file is at fault or has no bodies, or numbers of the search are out of their range.
 pub fn solutions_of_file(
     file: &ProblemFile,
     search: &SolutionSearch,
 ) -> Result<Vec<FoundSolution>> {
+    if !(1..=MOST_STARTS).contains(&search.starts) {
+        return Err(Error::value("starts", search.starts, format!("1 to {MOST_STARTS}")));
+    }
+    SolverSettings::to_residual(Method::Nncg, search.tolerance, search.max_sweeps).validate()?;
+    file.delassus()?;
     match &file.bodies {
         Some(bodies) => Ok(with_model!(bodies.parts(file)?, M => find::<M>(bodies, file, search))),
         None => {
@@ -55,6 +66,7 @@ fn find<M: Model>(
             starts: solution.starts.clone(),
             distances: before.map(|it| velocity_distance(&it.problem, &solution.problem)).collect(),
             farthest: farthest.unwrap_or_default(),
+            velocities: body_velocities(&solution.problem, bodies),
         }
     });
     found.collect()

@@ -10,8 +10,8 @@ use super::{BodyForm, ProblemFile};
 use crate::error::Result;
 use crate::number;
 use crate::solver::{
-    Memory, MethodOrder, Model, Ordering, SolveProgress, SolveReport, SolverSettings, is_ended,
-    solve, solve_delassus,
+    Memory, MethodOrder, Model, Ordering, SolveProgress, SolveReport, SolverSettings, StepProblem,
+    is_ended, solve, solve_delassus,
 };
 
 /// What a method made of a problem.
@@ -147,10 +147,18 @@ fn solve_bodies<M: Model>(
         impulses[contact as usize] =
             problem.reduced_impulse(number, row).map(|impulse| row.effective_mass * impulse);
     }
+    let velocities = body_velocities(&problem, bodies);
+    TimedSolution { seconds, report, impulses, velocities: Some(velocities) }
+}
+
+/// (v_x, v_y, ω) of each body of a problem, m/s and rad/s.
+pub(super) fn body_velocities<M: Model>(
+    problem: &StepProblem<M>,
+    bodies: &BodyForm,
+) -> Vec<[f64; 3]> {
     let velocity = |(body, radius): (_, &f64)| {
         let [x, y, spin] = M::coordinates(body);
         [x, y, spin / radius]
     };
-    let velocities = problem.bodies.now.iter().zip(&bodies.radius).map(velocity).collect();
-    TimedSolution { seconds, report, impulses, velocities: Some(velocities) }
+    problem.bodies.now.iter().zip(&bodies.radius).map(velocity).collect()
 }
