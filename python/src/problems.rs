@@ -44,7 +44,8 @@ pub(crate) fn solve<'py>(
     as_python(py, solution.map_err(exception)?)
 }
 
-/// Looks for the solutions that a contact problem has under Coulomb's law, from several starts.
+/// Looks for the solutions that a contact problem has under Coulomb's law, from several starts. What Ctrl-C
+/// leaves undone goes on in the background.
 #[pyfunction]
 #[pyo3(signature = (problem, starts=8, tolerance=1e-8, max_sweeps=1_000_000))]
 pub(crate) fn solutions<'py>(

@@ -78,7 +78,7 @@ def test_a_step_with_two_solutions_is_found_to_have_them(tmp_path: Path) -> None
         slump.solutions(file, starts=0)
     with pytest.raises(slump.InputError, match="tolerance is NaN, but must be a finite number > 0"):
         slump.solutions(file, tolerance=float("nan"))
-    with pytest.raises(slump.InputError, match="must be left out where a problem is given without bodies"):
+    with pytest.raises(slump.InputError, match="bodies is missing, but must be in the problem: its solutions"):
         slump.solutions({**json.loads(file.read_text()), "bodies": None})
 
 

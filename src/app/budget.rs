@@ -58,7 +58,7 @@ pub(super) const COULOMB: Budget = Budget {
 pub(super) const SOLVED: Budget = Budget {
     name: "Solved",
     hint: "Each step is solved within bounds of friction that sweeps give (tresca). Where a pile flows, velocities differ \
-           from those of Coulomb's law by up to four hundredths of the root of g d. Slumps are those of Coulomb's law where that is solved.",
+           from those of Coulomb's law by up to four hundredths of the root of g d at 1 ms. Slumps are those of Coulomb's law where that is solved.",
     settings: SolverSettings::DEFAULT,
 };
 

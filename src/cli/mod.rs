@@ -17,7 +17,8 @@ use crate::config::{Config, parser_of, refusal_of, scene_to_toml, write_discs};
 use crate::error::{Error, Result};
 use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{
-    FoundSolution, ProblemFile, Solution, problem_file_at, solutions_of_file, solve_file,
+    FoundSolution, MOST_STARTS, ProblemFile, Solution, problem_file_at, solutions_of_file,
+    solve_file,
 };
 use crate::output::{
     Progress, Signal, caught_signal, check_new_file, heed_signals, ignore_file_size_signal,
@@ -326,7 +327,7 @@ enum ProblemCommand {
         repeat: u32,
         /// Look for solutions of Coulomb's law from this many starts (the file's impulses, none, then random ones), and say how
         /// far apart they are
-        #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "without_bodies", value_parser = clap::value_parser!(u32).range(..=1000))]
+        #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "without_bodies", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_STARTS)))]
         starts: u32,
         /// Work on W alone, whether or not the file has bodies
         #[arg(long)]

@@ -11,7 +11,7 @@ use crate::solver::{
 };
 use crate::world::Grain;
 
-/// Smaller distances, in √(g d), are not judged: what is told of them is known to be too large.
+/// Smaller distances, in √(g d), are not judged: the error that is reported there is known to be too large.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 
 /// One solve: what was told, and how far it was off, in what such errors are held against.

@@ -14,7 +14,7 @@ mod siconos;
 mod solution;
 
 pub use bodies::{BodyForm, problem_file_at, problem_file_of};
-pub use several::{FoundSolution, solutions_of_file};
+pub use several::{FoundSolution, MOST_STARTS, solutions_of_file};
 pub use solution::{Solution, solve_file};
 
 use std::path::Path;

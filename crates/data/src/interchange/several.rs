@@ -24,8 +24,8 @@ pub struct FoundSolution {
     pub velocities: Vec<[f64; 3]>,
 }
 
-/// Starts at the most.
-const MOST_STARTS: u32 = 1_000;
+/// Starts of one search at the most.
+pub const MOST_STARTS: u32 = 1_000;
 
 /// Looks for solutions of a file's problem.
 ///
@@ -39,12 +39,13 @@ pub fn solutions_of_file(
         return Err(Error::value("starts", search.starts, format!("1 to {MOST_STARTS}")));
     }
     SolverSettings::to_residual(Method::Nncg, search.tolerance, search.max_sweeps).validate()?;
+    // Checks the file.
     file.delassus()?;
     match &file.bodies {
         Some(bodies) => Ok(with_model!(bodies.parts(file)?, M => find::<M>(bodies, file, search))),
         None => {
-            let allowed = "left out where a problem is given without bodies";
-            Err(Error::value("starts", search.starts, allowed))
+            let allowed = "in the problem: its solutions are told apart by their velocities";
+            Err(Error::value("bodies", "missing", allowed))
         }
     }
 }
