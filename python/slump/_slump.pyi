@@ -46,6 +46,7 @@ class _Settings(TypedDict):
     cone: Literal["shifted", "compressive"]
     restitution_threshold: float
     debonding_distance: float
+    touch_tolerance: float
     tilt: float
     stiffness: float
     damping_ratio: float
@@ -56,7 +57,7 @@ class _Settings(TypedDict):
     tolerance: float
     max_sweeps: int
     warm_start: bool
-    friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
+    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     push_out: bool
     max_travel: float
@@ -74,6 +75,7 @@ class _Changes(TypedDict, total=False):
     cone: Literal["shifted", "compressive"] | None
     restitution_threshold: _Float | None
     debonding_distance: _Float | None
+    touch_tolerance: _Float | None
     tilt: _Float | None
     stiffness: _Float | None
     damping_ratio: _Float | None
@@ -84,7 +86,7 @@ class _Changes(TypedDict, total=False):
     tolerance: _Float | None
     max_sweeps: _Int | None
     warm_start: _Bool | None
-    friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"] | None
+    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"] | None
     model_solves: _Int | None
     push_out: _Bool | None
     max_travel: _Float | None
@@ -102,6 +104,7 @@ class _Attributes:
     cone: Literal["shifted", "compressive"]
     restitution_threshold: float
     debonding_distance: float
+    touch_tolerance: float
     tilt: float
     stiffness: float
     damping_ratio: float
@@ -112,7 +115,7 @@ class _Attributes:
     tolerance: float
     max_sweeps: int
     warm_start: bool
-    friction_model: Literal["of-method", "coulomb", "tresca", "associated", "desaxce"]
+    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     push_out: bool
     max_travel: float

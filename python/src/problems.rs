@@ -45,7 +45,7 @@ pub(crate) fn solve<'py>(
 }
 
 /// Looks for the solutions that a contact problem has under Coulomb's law, from several starts. What Ctrl-C
-/// leaves undone goes on in the background.
+/// leaves undone continues in the background.
 #[pyfunction]
 #[pyo3(signature = (problem, starts=8, tolerance=1e-8, max_sweeps=1_000_000))]
 pub(crate) fn solutions<'py>(

@@ -1,7 +1,7 @@
 //! The budget of the solver: how well steps are solved at first, what else is one click away, and what to try.
 
 use crate::sim::{Settings, Stepper, Surroundings};
-use crate::solver::{FrictionModel, Method, SolverSettings};
+use crate::solver::{Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic};
 
 /// A way to solve steps that has a name.
@@ -42,28 +42,16 @@ pub(super) const PAPER: Budget = Budget {
     settings: SolverSettings::PAPER,
 };
 
-/// Coulomb's law itself.
-pub(super) const COULOMB: Budget = Budget {
-    name: "Coulomb",
-    hint: "Coulomb's law itself, by Newton's method, at a higher cost than Solved. For some steps it finds no \
-           solution, and strong piles feel what is left of these.",
-    settings: SolverSettings {
-        friction_model: FrictionModel::Coulomb,
-        max_sweeps: 500,
-        ..SolverSettings::DEFAULT
-    },
-};
-
 /// What everything begins with.
 pub(super) const SOLVED: Budget = Budget {
     name: "Solved",
-    hint: "Each step is solved within bounds of friction that sweeps give (tresca). Where a pile flows, velocities differ \
-           from those of Coulomb's law by up to four hundredths of the root of g d at 1 ms. Slumps are those of Coulomb's law where that is solved.",
+    hint: "Each step is solved under Coulomb's law, by Newton's method. If it does not solve a step of a flowing pile, conjugate \
+           gradients make 400 sweeps, and the error that remains is shown.",
     settings: SolverSettings::DEFAULT,
 };
 
 /// All of them.
-pub(super) const BUDGETS: [Budget; 4] = [FAST, SOLVED, COULOMB, PAPER];
+pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
 /// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`docs/paper.md`, Fig. 5a); beyond it need not.
 const WEAK: f64 = 50.0;

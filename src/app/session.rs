@@ -22,7 +22,7 @@ use crate::output::{Seal, write_file};
 /// What files begin with.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
-    format: 5,
+    format: 6,
     what: "session",
     of: "",
     form: "a session that the window saved",

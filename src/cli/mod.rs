@@ -255,7 +255,7 @@ impl Listed {
                 let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
                 let takers = takers.collect::<Vec<_>>().join(", ");
                 print_line(format_args!("Models of friction, those beside coulomb for {takers}:"));
-                FrictionModel::SOLVED.iter().for_each(|model| row(model.name(), model.hint()));
+                FrictionModel::ALL.iter().for_each(|model| row(model.name(), model.hint()));
             }
         }
     }

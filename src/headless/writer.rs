@@ -326,15 +326,19 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     if unconverged_steps == 0 || !scene.stepper.uses_method() {
         return;
     }
+    // `auto` gives up before the limit.
+    let within = match scene.solver.method {
+        Method::Auto => String::new(),
+        _ => format!(" within {} sweeps", scene.solver.max_sweeps),
+    };
     note_line(legible(&format!(
         "{} (Bond {}, time step {} s): {unconverged_steps} of {steps} steps did not reach tolerance \
-         {:e} within {} sweeps, {stalled_steps} of them stalled (more sweeps would be of no \
-         use); velocities are off by some {:.2} mm/s at most",
+         {:e}{within}, {stalled_steps} of them stalled (more sweeps would be of no use); velocities are \
+         off by some {:.2} mm/s at most",
         scene.name,
         scene.parameters.bond,
         scene.parameters.time_step_secs,
         scene.solver.tolerance,
-        scene.solver.max_sweeps,
         1e3 * largest_velocity_error,
     )));
 }

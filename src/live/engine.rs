@@ -8,6 +8,7 @@ use std::time::Duration;
 use triple_buffer::Input;
 
 use super::clock::{Clock, receive_within};
+use super::mode::Mode;
 use super::{
     Command, LiveFrame, LiveOptions, LiveStart, LoadingProgress, Pace, RunHistory, StartSource,
     WorldFrame,
@@ -21,41 +22,6 @@ use crate::sim::{Settings, Surroundings};
 const UNFETCHED_INTERVALS: u32 = 3;
 /// Least time between two frames that tell of the progress of a loading.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
-
-/// What the thread is at.
-#[derive(Clone, Debug)]
-enum Mode {
-    Paused,
-    /// Time passes: steps are computed as they are due.
-    Computing,
-    /// Time passes within the record: stored moments are shown up to this simulated time, s, and nothing is computed, so
-    /// that a slow run is shown fluently. The worlds stay where they are meanwhile.
-    Showing {
-        until_secs: f64,
-    },
-    /// A recorded moment is computed, after which time passes or stands still.
-    Seeking {
-        then_plays: bool,
-    },
-    /// A step that takes longer than a slice is brought to its end, after which time stands still.
-    Stepping,
-    /// A start is made.
-    Loading(LoadingProgress),
-}
-
-impl Mode {
-    fn of_play(plays: bool) -> Self {
-        if plays { Self::Computing } else { Self::Paused }
-    }
-
-    fn plays(&self) -> bool {
-        matches!(self, Self::Computing | Self::Showing { .. } | Self::Seeking { then_plays: true })
-    }
-
-    fn seeks(&self) -> bool {
-        matches!(self, Self::Seeking { .. })
-    }
-}
 
 struct Outbox {
     frames: Input<LiveFrame>,
@@ -149,7 +115,7 @@ impl Engine {
             Mode::Seeking { .. } => self.advance_seek(),
             Mode::Showing { .. } => self.advance_show(),
             Mode::Computing => self.advance_run(),
-            Mode::Stepping => self.advance_step(),
+            Mode::Stepping { .. } => self.advance_step(),
             Mode::Paused | Mode::Loading(_) => {}
         }
         let is_due = self.outbox.is_urgent || self.outbox.wait().is_zero();
@@ -200,7 +166,7 @@ impl Engine {
 
     /// How long nothing is to be done; none where only a command changes that.
     pub(super) fn wait(&mut self) -> Option<Duration> {
-        if self.mode.seeks() || matches!(self.mode, Mode::Stepping) {
+        if self.mode.seeks() || matches!(self.mode, Mode::Stepping { .. }) {
             return Some(Duration::ZERO);
         }
         let frame = self.outbox.is_behind.then(|| self.outbox.wait());
@@ -250,13 +216,16 @@ impl Engine {
             }
             Command::Play => self.play(),
             Command::Pause => self.pause(),
-            Command::Step => {
-                self.mode = Mode::Paused;
-                self.tick();
-                if self.history.present.is_on_its_way() {
-                    self.mode = Mode::Stepping;
+            Command::Step => match &mut self.mode {
+                Mode::Stepping { more } => *more += 1,
+                _ => {
+                    self.mode = Mode::Paused;
+                    self.tick();
+                    if self.history.present.is_on_its_way() {
+                        self.mode = Mode::Stepping { more: 0 };
+                    }
                 }
-            }
+            },
             Command::Seek(time_secs) => self.seek(time_secs, false),
             Command::SetPace(pace) => self.set_pace(pace),
             Command::Name(number, name) => self.history.name(number, name),
@@ -318,7 +287,7 @@ impl Engine {
         match self.mode {
             Mode::Showing { until_secs } => self.seek(until_secs, false),
             Mode::Seeking { .. } => self.mode = Mode::Seeking { then_plays: false },
-            _ if self.history.present.is_on_its_way() => self.mode = Mode::Stepping,
+            _ if self.history.present.is_on_its_way() => self.mode = Mode::Stepping { more: 0 },
             _ => self.mode = Mode::Paused,
         }
     }
@@ -369,9 +338,13 @@ impl Engine {
 
     fn advance_step(&mut self) {
         self.tick();
-        if !self.history.present.is_on_its_way() {
-            self.mode = Mode::Paused;
-            self.publish();
+        match &mut self.mode {
+            _ if self.history.present.is_on_its_way() => {}
+            Mode::Stepping { more } if *more > 0 => *more -= 1,
+            _ => {
+                self.mode = Mode::Paused;
+                self.publish();
+            }
         }
     }
 
@@ -485,7 +458,7 @@ impl Engine {
             playing: self.mode.plays(),
             replaying: run.replays(),
             branching: run.branches(),
-            seeking: self.mode.seeks() || matches!(self.mode, Mode::Stepping),
+            seeking: self.mode.seeks() || matches!(self.mode, Mode::Stepping { .. }),
             stored: shown_secs.is_some(),
             loading,
             refusal: self.refusal.clone(),

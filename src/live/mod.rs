@@ -11,6 +11,7 @@ mod engine;
 mod frame;
 mod handle;
 mod history;
+mod mode;
 mod record;
 mod remote;
 mod stored_moments;

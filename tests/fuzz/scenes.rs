@@ -68,6 +68,7 @@ fn parameters(u: &mut Unstructured<'_>) -> Result<Parameters> {
         substeps: *u.choose(&[0, 0, 1, 7])?,
         tilt: 0.0,
         bond_acceleration: *u.choose(&[0.0, 0.0, 5.0])?,
+        touch_tolerance: *u.choose(&[0.0, 0.0, 1e-5, 0.1])?,
     })
 }
 

@@ -85,6 +85,8 @@ fn only_settings_that_change_nothing_are_told_of_as_such() {
         ("moreau --push-out --max-travel 0.5 --calm-unsolved --sequential-impacts", None),
         ("range --max-travel 0.5 --debonding-distance 0.02", None),
         ("dem --stiffness 1e6 --max-sweeps 5", Some("the stepper dem does not read max-sweeps")),
+        ("moreau --touch-tolerance 1e-3", None),
+        ("range --touch-tolerance 1e-3", Some("the stepper range does not read touch-tolerance")),
         ("moreau --push-out --stiffness 1e6", Some("the stepper moreau does not read stiffness")),
     ] {
         let said = succeed(slump(&format!("{run} {options}")).current_dir(folder.path()));
@@ -93,7 +95,7 @@ fn only_settings_that_change_nothing_are_told_of_as_such() {
     }
 }
 
-/// A step of the shipped pile that has two solutions; grain 82 tells them apart.
+/// A step of the shipped pile that has two solutions; grain 82 tells them apart. The pile gets there within bounds of friction.
 #[test]
 fn a_step_with_two_solutions_is_told_to_have_them() {
     let folder = folder();
@@ -102,7 +104,9 @@ fn a_step_with_two_solutions_is_told_to_have_them() {
         assert!(output.status.success(), "{line}: {}", said(&output));
         String::from_utf8(output.stdout).expect("text")
     };
-    problem("problem dump --bond 0 --dt 1e-3 --at 0.15 --restitution-threshold 2 --out step.json");
+    problem(
+        "problem dump --bond 0 --dt 1e-3 --at 0.15 --restitution-threshold 2 --friction-model tresca --out step.json",
+    );
     let said = problem("problem solve step.json --method nncg --starts 8");
     for part in ["starts          8,", "solutions       2\n", "most from 1: grain 82, by 7.0"] {
         assert!(said.contains(part), "{said}");

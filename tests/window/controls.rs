@@ -263,16 +263,22 @@ fn piles_of_every_size_begin_with_solved_steps_and_what_fast_leaves_is_told() {
 }
 
 #[test]
-fn a_large_pile_is_solved() {
-    let source = SceneSource {
-        grains: Some(2_100),
-        box_width: Some(61.0),
-        deposition: Some(Deposition::DropAndRoll),
-        ..SceneSource::default()
-    };
-    let mut robot = Robot::open(Config { source, ..Config::default() });
-    robot.clicks(&["Law, solver", "Solved"]);
-    robot.take_steps(1);
-    let last = robot.observables();
-    assert!(last.converged, "{last:?}");
+fn a_large_pile_is_solved_as_on_the_command_line_and_says_what_is_left() {
+    for bond in [0.0, 50.0] {
+        let source = SceneSource {
+            grains: Some(2_100),
+            box_width: Some(61.0),
+            deposition: Some(Deposition::DropAndRoll),
+            ..SceneSource::default()
+        };
+        let parameters = slump::world::ParameterChanges { bond: Some(bond), ..Default::default() };
+        let mut robot = Robot::open(Config { source, parameters, ..Config::default() });
+        assert_eq!(robot.settings().solver, slump::solver::SolverSettings::DEFAULT);
+        robot.take_steps(3);
+        let last = robot.observables();
+        // What stands is solved; what falls is left with an error that is told.
+        assert_eq!(last.converged, bond > 0.0, "{last:?}");
+        let falling_speed = (9.81 * robot.world().snapshot.surroundings.mean_diameter).sqrt();
+        assert!(last.velocity_error < 0.03 * falling_speed, "{last:?}");
+    }
 }

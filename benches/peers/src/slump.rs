@@ -2,7 +2,7 @@
 
 use slump_core::error::Result;
 use slump_core::sim::{Remedies, Simulation, Stepper};
-use slump_core::solver::{Method, SolverSettings};
+use slump_core::solver::{FrictionModel, Method, SolverSettings};
 
 use crate::engine::Engine;
 use crate::pile::Pile;
@@ -12,7 +12,7 @@ use crate::pile::Pile;
 pub enum Way {
     /// The paper's scheme with so many sweeps a step.
     Sweeps { count: u32, push_out: bool },
-    /// The default: every step certified.
+    /// Every step solved within bounds of friction.
     Certified { push_out: bool },
     /// Soft contacts with substeps.
     TgsSoft { substeps: u32 },
@@ -31,6 +31,7 @@ impl Slump {
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
             }
             Way::Certified { push_out } => {
+                scene.solver = SolverSettings::BOUNDED;
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
             }
             Way::TgsSoft { substeps } => {

@@ -28,6 +28,7 @@ pub mod stability;
 mod states;
 mod statistics;
 mod sweep;
+mod sweep_chart;
 mod validate;
 
 pub use budget::{BudgetOptions, ErrorBudget, Trust, budget, made as made_budget};
@@ -44,4 +45,5 @@ pub use speed::{ChartOptions, ChartPart, chart_speed};
 pub use states::settled_pile;
 pub use statistics::{Mean, mean};
 pub use sweep::{Shard, SweepOptions, merge, sweep};
+pub use sweep_chart::SweepChart;
 pub use validate::{ValidateOptions, validate};

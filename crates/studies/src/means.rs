@@ -10,6 +10,7 @@ use serde_json::{Map, Value};
 use super::Study;
 use super::machine::Machine;
 use super::plan::SEED;
+use super::report::write_sheet;
 use super::results::{RunResult, RunsTable, Status};
 use super::statistics::mean;
 use crate::error::{Error, Result};
@@ -17,6 +18,7 @@ use crate::output::write_file;
 use crate::solver::worst;
 
 pub(super) const REPORT: &str = "report.json";
+const CHART: &str = "chart";
 
 #[derive(Serialize)]
 struct SweepReport<'a> {
@@ -34,34 +36,40 @@ struct SweepReport<'a> {
 
 /// Runs that differ in their start alone.
 #[derive(Default, Serialize)]
-struct RunGroup {
+pub(super) struct RunGroup {
     /// What varies between groups.
-    settings: Map<String, Value>,
+    pub settings: Map<String, Value>,
     /// Runs that have a number: those that came to an end and lost no grain.
-    starts: usize,
+    pub starts: usize,
     /// Those that did not.
-    spoilt: usize,
+    pub spoilt: usize,
     /// Mean slump, and half its 95 % interval; `null` where no start has one, and where one start proves nothing.
-    slump: [f64; 2],
+    pub slump: [f64; 2],
     /// The same of this slump less that under the first value of a list, all else alike, over the starts of both. By the
     /// first name of the list.
-    less_first: BTreeMap<String, [f64; 2]>,
+    pub less_first: BTreeMap<String, [f64; 2]>,
     /// Share of the steps that were not solved as asked.
-    unsolved: f64,
+    pub unsolved: f64,
     /// The largest bound that a step had on the velocities' error, m/s; `null` where a state was no longer finite.
-    largest_velocity_error: f64,
+    pub largest_velocity_error: f64,
     /// The largest of the runs' mean overlaps, d.
-    mean_overlap: f64,
+    pub mean_overlap: f64,
     /// Time of a run in the mean, s.
-    secs: f64,
+    pub secs: f64,
 }
 
-/// Writes the report of a study whose runs are all there. `version` is the program's.
+/// Writes the report of a study whose runs are all there, and its chart. `version` is the program's.
 ///
 /// # Errors
 /// Where it cannot be written.
 pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &str) -> Result<()> {
-    let Machine { version, processor, cores, date, command, .. } = Machine::this(version)?;
+    let machine = Machine::this(version)?;
+    let groups = groups(study, table)?;
+    if let Some(chart) = &study.chart {
+        let sheet = chart.sheet(&groups, &machine, study.is_quick_pass);
+        write_sheet(folder, CHART, &sheet, &machine.command)?;
+    }
+    let Machine { version, processor, cores, date, command, .. } = machine;
     let report = SweepReport {
         program: "slump",
         version,
@@ -72,7 +80,7 @@ pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &st
         study: &study.name,
         runs: table.rows.len(),
         core_secs: table.wall_secs.iter().sum(),
-        groups: groups(study, table)?,
+        groups,
     };
     let path = folder.join(REPORT);
     let json = serde_json::to_string_pretty(&report).map_err(|error| Error::file(&path, error))?;

@@ -8,6 +8,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use super::sweep_chart::SweepChart;
 use crate::config::{BaseScene, Config};
 use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
@@ -37,6 +38,7 @@ struct StudyFile {
     vary: Table,
     series: Option<SeriesSettings>,
     data: Option<DataSettings>,
+    chart: Option<SweepChart>,
     #[serde(default)]
     quick: Quick,
 }
@@ -73,6 +75,8 @@ pub struct Study {
     pub series: Option<SeriesSettings>,
     /// What is recorded of each run, if anything: below the results, in a folder that has the run's key.
     pub data: Option<DataSettings>,
+    /// What is drawn of the results, if anything.
+    pub chart: Option<SweepChart>,
     /// The names of what varies, a list of them for what varies together.
     pub varied: Vec<Vec<String>>,
     /// The runs.
@@ -99,20 +103,17 @@ impl Study {
             let place = line.map_or(String::new(), |line| format!("line {line}: "));
             Error::unread(path, format!("{place}{}", one_line(error.message())), FORM)
         })?;
+        let varied = |vary: &Table| -> Vec<_> { vary.keys().map(|key| names_of(key)).collect() };
+        file.chart.as_ref().map_or(Ok(()), |chart| chart.check(&varied(&file.vary)))?;
         let Quick { base, vary } = std::mem::take(&mut file.quick);
         let is_quick_pass = quick && !(base.is_empty() && vary.is_empty());
         if is_quick_pass {
             replace("quick.base", &mut file.base, &mut file.vary, base)?;
             replace("quick.vary", &mut file.vary, &mut file.base, vary)?;
         }
-        let series_is_sound =
-            |series: &SeriesSettings| series.interval > 0.0 && series.interval.is_finite();
-        if let Some(series) = file.series.as_ref().filter(|series| !series_is_sound(series)) {
-            return Err(Error::value(
-                "series.interval",
-                series.interval,
-                "a finite number of seconds > 0",
-            ));
+        let interval = file.series.as_ref().map(|series| series.interval);
+        if let Some(secs) = interval.filter(|secs| !(*secs > 0.0 && secs.is_finite())) {
+            return Err(Error::value("series.interval", secs, "a finite number of seconds > 0"));
         }
         if let Some(data) = &file.data {
             data.validate("data.every_secs")?;
@@ -121,7 +122,6 @@ impl Study {
                 return Err(Error::value("data.folder", folder.display(), allowed));
             }
         }
-        let varied = file.vary.keys().map(|key| names_of(key)).collect();
         let runs = lay_out(&file, path.parent().unwrap_or(Path::new("")))?;
         let mut hasher = blake3::Hasher::new();
         for run in &runs {
@@ -133,7 +133,8 @@ impl Study {
             is_quick_pass,
             series: file.series,
             data: file.data,
-            varied,
+            chart: file.chart,
+            varied: varied(&file.vary),
             runs,
         })
     }

@@ -106,7 +106,7 @@ const LINE_UPS: [LineUp; 7] = [
                 let solver = SolverSettings { method, friction_model, model_solves, ..base.solver };
                 Settings { solver, ..base }
             };
-            let once = FrictionModel::SOLVED.iter().map(|&model| by(model, 1));
+            let once = FrictionModel::ALL.iter().map(|&model| by(model, 1));
             once.chain([by(FrictionModel::Tresca, 4)]).collect()
         },
     },

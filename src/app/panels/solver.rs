@@ -108,7 +108,7 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     })
     .response
     .on_disabled_hover_text(format!("{} solves Coulomb's law alone.", method.name));
-    if settings.solver.model().is_taken_anew() {
+    if settings.solver.friction_model.is_taken_anew() {
         setting_control::show(ui, about("model-solves"), settings, start);
     }
 }

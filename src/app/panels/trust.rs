@@ -10,7 +10,7 @@ use super::grain::compact;
 use super::status::alarms;
 use crate::Instant;
 use crate::app::IN_BROWSER;
-use crate::app::budget::FAST;
+use crate::app::budget::{FAST, SOLVED};
 use crate::app::ensemble::on_idle_cores;
 use crate::app::state::AppState;
 use crate::app::theme;
@@ -157,10 +157,11 @@ fn solved(world: &WorldFrame) -> Vec<String> {
         return vec![format!("● All {} are solved as asked, {off}.", counted(last.step, "step"))];
     }
     let steps = counted(last.step, "step");
-    vec![
-        format!("● {unsolved} of {steps} were not solved as asked, {off}."),
-        "● Solved, under Law, solver, solves each step.".into(),
-    ]
+    let mut lines = vec![format!("● {unsolved} of {steps} were not solved as asked, {off}.")];
+    if world.controls.settings.solver != SOLVED.among(&world.snapshot.surroundings) {
+        lines.push("● Solved, under Law, solver, leaves fewer.".into());
+    }
+    lines
 }
 
 /// What the error budget says, or how far it is.

@@ -9,5 +9,6 @@ mod lost_grains;
 mod moments;
 mod pyramid;
 mod slopes;
+mod touch_tolerance;
 mod turning_pairs;
 mod two_bodies;

@@ -56,7 +56,7 @@ fn scenes(all: bool) -> Vec<Scene> {
 fn solvers() -> Vec<SolverSettings> {
     let mut solvers = Vec::new();
     for ((method, model), (stop, tolerance)) in pairs(
-        pairs(Method::ALL.iter().copied(), FrictionModel::SOLVED),
+        pairs(Method::ALL.iter().copied(), FrictionModel::ALL.iter().copied()),
         [
             (StopTest::RelativeChange, 1e-6),
             (StopTest::RelativeChange, 1e-2),

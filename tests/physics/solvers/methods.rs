@@ -248,3 +248,24 @@ fn every_method_keeps_the_cradle_closed_where_the_exact_answer_is_closed() {
         assert!(gap < 1e-6, "{}: the bond is open by {gap} m", info.name);
     }
 }
+
+#[test]
+fn the_default_sweeps_a_large_pile_that_flows_and_solves_one_that_stands() {
+    let box_width_in_diameters = 45.0;
+    let deposition = Deposition::DropAndRoll;
+    let new = NewPile { grains: 1_100, box_width_in_diameters, seed: 3, deposition };
+    let mut scene =
+        pile_of(settle(&new, |_| true).expect("a pile"), box_width_in_diameters).expect("a scene");
+    scene.parameters.time_step_secs = 1e-3;
+    let mut last = |bond| {
+        scene.parameters.bond = bond;
+        let mut run = scene.simulation().expect("a proper scene");
+        (0..60).for_each(|_| _ = run.step().expect("a finite state"));
+        *run.observables()
+    };
+    let flowing = last(0.0);
+    assert!(flowing.contacts > 1_000 && flowing.slump > 0.01, "{flowing:?}");
+    assert_eq!((flowing.factorisations, flowing.converged), (0, false));
+    let standing = last(100.0);
+    assert!(standing.converged && standing.slump.abs() < 1e-3, "{standing:?}");
+}

@@ -77,7 +77,7 @@ fn ways(scene: &Scene) -> Vec<Settings> {
             way.with_only_what_is_taken()
         })
         .collect();
-    for friction_model in FrictionModel::SOLVED {
+    for &friction_model in FrictionModel::ALL {
         let mut way = Settings { stepper: Stepper::Moreau, ..base };
         let model_solves = if friction_model == FrictionModel::Tresca { 2 } else { 1 };
         way.solver =

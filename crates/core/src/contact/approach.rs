@@ -82,6 +82,16 @@ pub(crate) enum InTouch {
 }
 
 impl LookAhead {
+    /// The same, with all that is no farther apart than `range` (m) in touch.
+    pub(crate) fn pulling_within(self, range: f64) -> Self {
+        Self {
+            distance: self.distance.max(range),
+            reach: self.reach.max(range),
+            in_touch: InTouch::Within(range),
+            ..self
+        }
+    }
+
     /// The gap that a grain of that velocity (m/s) may close, m: with its own speed, but for bonds, which
     /// may be open however slow their grains are.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {

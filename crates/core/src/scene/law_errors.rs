@@ -6,8 +6,8 @@ use crate::contact::ContactList;
 use crate::scene::{Deposition, NewPile, SCENES, Scene, built_in, pile_of, settle, stability};
 use crate::sim::{ProblemVisitor, Stepper};
 use crate::solver::{
-    FrictionModel, Memory, Method, Model, SolutionSearch, SolverSettings, StepProblem, measure,
-    solve, velocity_distance, velocity_error,
+    FrictionModel, Memory, Method, Model, Solution, SolutionSearch, SolverSettings, StepProblem,
+    measure, solve, velocity_distance, velocity_error,
 };
 use crate::world::Grain;
 
@@ -48,6 +48,7 @@ fn ways() -> Vec<(&'static str, SolverSettings)> {
     let sweeps = |method, max_sweeps| SolverSettings::to_residual(method, 1e-13, max_sweeps);
     vec![
         ("the default", SolverSettings::default()),
+        ("tresca", SolverSettings::BOUNDED),
         ("10 of nsgs", sweeps(Method::Nsgs, 10)),
         ("60 of nsgs", sweeps(Method::Nsgs, 60)),
         ("60 of nncg", sweeps(Method::Nncg, 60)),
@@ -69,16 +70,22 @@ impl ProblemVisitor for Judge<'_> {
         let unit = velocity_error(problem).scale;
         let judge = |(way, settings): (&str, SolverSettings)| {
             let mut tried = problem.clone();
-            if settings.model() == FrictionModel::Coulomb {
-                tried.take_coulombs_law();
+            match settings.friction_model {
+                FrictionModel::Coulomb => tried.take_coulombs_law(),
+                model => tried.begin_friction(model),
             }
             solve(&mut tried, &mut Memory::default(), &settings);
-            let apart = solutions.iter().map(|it| velocity_distance(&tried, &it.problem));
-            Judged {
-                what: format!("{what}, {way}"),
-                told: measure(&tried).velocity_error / unit,
-                off: apart.fold(f64::INFINITY, f64::min) / unit,
+            let told = measure(&tried).velocity_error;
+            let apart = |solution: &Solution<M>| velocity_distance(&tried, &solution.problem);
+            let mut off = solutions.iter().map(apart).fold(f64::INFINITY, f64::min);
+            if off > told {
+                // Of several solutions, the nearest may be one that none of the starts led to.
+                let from_here = search.from(&tried, 0);
+                if from_here.residual <= largest_residual {
+                    off = off.min(apart(&from_here));
+                }
             }
+            Judged { what: format!("{what}, {way}"), told: told / unit, off: off / unit }
         };
         ways().into_iter().map(judge).collect()
     }
@@ -222,18 +229,22 @@ fn what_is_told_of_a_step_is_near_its_distance_to_coulombs_law() {
 }
 
 #[test]
-#[ignore = "slow, a minute"]
+#[ignore = "slow, three minutes"]
 fn so_it_is_of_large_piles() {
-    for (grains, largest_residual) in [(138, 1e-8), (500, 1e-8), (2_000, 1e-3)] {
+    let mut all = Vec::new();
+    for (grains, largest_residual, steps) in [
+        (138, 1e-8, &[20, 30, 40, 50, 60, 70, 80, 90][..]),
+        (500, 1e-8, &[20, 30, 40, 50, 60, 70, 80, 90]),
+        (2_000, 1e-3, &[30, 50, 70]),
+    ] {
         let how = Search { starts: 3, max_sweeps: 30_000, largest_residual };
         for bond in [0.0, 20.0, 100.0] {
             let what = format!("{grains} grains, Bond {bond}");
-            // Small errors of piles at rest are told too large.
-            check(
-                &what,
-                &judge(&pile(grains, bond, 1e-3), &what, &[30, 50, 70], how),
-                f64::INFINITY,
-            );
+            let judged = judge(&pile(grains, bond, 1e-3), &what, steps, how);
+            tell(&what, &judged);
+            all.extend(judged);
         }
     }
+    // Small errors of piles at rest are told too large.
+    check("large piles", &all, f64::INFINITY);
 }

@@ -123,7 +123,7 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
         return Advice::RestitutionThreshold;
     }
     // Under other models Newton's method would be another law.
-    if solver.model() == FrictionModel::Coulomb {
+    if solver.friction_model == FrictionModel::Coulomb {
         let newton = Method::Newton.info();
         let is_driven = state.world.motions.iter().any(|motion| motion.drive.is_some());
         let is_sheared = state.world.periodic.is_some_and(Periodic::is_sheared);
@@ -131,7 +131,9 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
         if is_taken && solver.method != Method::Newton {
             return Advice::Newton;
         }
-        if stalled && state.physics.friction && parameters.friction > 0.0 {
+        // With walls that a force drives `auto` gives up before the limit, so more sweeps would not help.
+        let gives_up = solver.method == Method::Auto;
+        if (stalled || gives_up) && state.physics.friction && parameters.friction > 0.0 {
             return Advice::BoundedFriction;
         }
     }

@@ -12,12 +12,11 @@ impl Simulation {
         (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// The method that solves a problem as large as that of the last step: that of the settings, or the one that `auto`
-    /// picks.
+    /// The method that solves the next step: that of the settings, or the one that `auto` picks.
     pub fn picked_method(&self) -> Method {
-        let Settings { solver, .. } = &self.settings;
-        let model = solver.model();
-        picked(solver, model, self.state.contacts.contacts().len(), self.is_driven())
+        let Settings { solver, parameters, .. } = &self.settings;
+        let rubs = self.state.physics.friction && parameters.friction > 0.0;
+        picked(solver, solver.friction_model, rubs, self.is_driven())
     }
 
     fn is_driven(&self) -> bool {

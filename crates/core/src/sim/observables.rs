@@ -160,7 +160,7 @@ pub(super) fn at_start<M: Model>(
         M::kinetic_energy(&body, state.world.grains.masses[index])
     };
     let bonds = settings.stepper.has_bonds().then(BondEnergies::default);
-    let none_yet = settings.may_solve_models().then_some(0.0);
+    let none_yet = settings.solves_models().then_some(0.0);
     let measures = Measures { model_residual: none_yet, ..Measures::default() };
     let result = StepResult { bonds, measures, ..StepResult::nothing_yet() };
     let time_step_secs = settings.parameters.time_step_secs;

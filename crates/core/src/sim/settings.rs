@@ -46,9 +46,9 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// True where steps may be solved under another model of friction than Coulomb's law.
-    pub(crate) fn may_solve_models(&self) -> bool {
-        self.stepper.uses_method() && self.solver.may_solve_models()
+    /// True if steps are solved under another model of friction than Coulomb's law.
+    pub(crate) fn solves_models(&self) -> bool {
+        self.stepper.uses_method() && self.solver.solves_models()
     }
 
     /// The setting `stepper` itself.
@@ -162,8 +162,7 @@ impl Settings {
     /// Checks that the model of friction goes with the stepper and its cone.
     fn check_friction_model(&self) -> Result<()> {
         let (model, cone) = (self.solver.friction_model, self.parameters.cone);
-        let is_asked = !matches!(model, FrictionModel::Coulomb | FrictionModel::OfMethod);
-        if is_asked && !self.stepper.reads("friction-model") {
+        if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
             let readers = Stepper::ALL.iter().filter(|stepper| stepper.reads("friction-model"));
             let (stepper, readers) = (self.stepper, names_of(readers).join(" and "));
             let allowed =
@@ -219,7 +218,7 @@ impl Settings {
             let takers = METHODS.iter().filter(|info| info.takes_drives).map(|info| info.name);
             return refuse("solver", self.solver.method.to_string(), takers.collect());
         }
-        let model = self.solver.model();
+        let model = self.solver.friction_model;
         if model.is_on_cone() {
             return refuse("friction-model", model.to_string(), vec!["coulomb", "tresca"]);
         }

@@ -179,7 +179,7 @@ impl Simulation {
                 result.add(advance.advance(stage, piece));
             })
         };
-        if settings.may_solve_models() {
+        if settings.solves_models() {
             result.measures.measure_as_a_model();
         }
         let time_step_secs = settings.parameters.time_step_secs;

@@ -15,12 +15,15 @@
 
 use crate::contact::Contact;
 use crate::sim::state::State;
+use crate::sim::steppers::moreau::touch_tolerance;
 use crate::sim::stepping::Stage;
 use crate::solver::{Model, for_each_row};
+use crate::world::Parameters;
 
-/// Counts the bonds that ended so in a solved step of that length (s), once the grains have moved.
-pub(super) fn count<M: Model>(stage: &Stage<'_, M>, time_step_secs: f64) -> u64 {
+/// Counts the bonds that ended so in a solved step, once the grains have moved.
+pub(super) fn count<M: Model>(stage: &Stage<'_, M>, parameters: &Parameters) -> u64 {
     let Stage { state, problem, .. } = stage;
+    let tolerance = touch_tolerance(state, parameters).max(state.candidates.gap_tolerance());
     if problem.law.capture_speed() == 0.0 {
         return 0;
     }
@@ -30,8 +33,8 @@ pub(super) fn count<M: Model>(stage: &Stage<'_, M>, time_step_secs: f64) -> u64 
         if is_within_bounds(impulse, problem.capture(number)) {
             let contact = state.contacts.contacts()[problem.rows.contacts[number] as usize];
             let opening = motion.now[0] - problem.wall_speed(number);
-            let expected = contact.gap + time_step_secs * opening;
-            ended += u64::from(is_open_against(state, &contact, expected, M::AXES));
+            let expected = contact.gap + parameters.time_step_secs * opening;
+            ended += u64::from(is_open_against(state, &contact, expected, tolerance, M::AXES));
         }
     });
     ended
@@ -42,16 +45,16 @@ pub(super) fn is_within_bounds(reduced_impulse: f64, capture_speed: f64) -> bool
     reduced_impulse < 0.0 && reduced_impulse > -capture_speed
 }
 
-/// True where the gap of a pair is not below the touch tolerance, though the pair's normal velocities led to a gap
+/// True where the gap of a pair is not below the touch tolerance (m), though the pair's normal velocities led to a gap
 /// (`expected`, m) that is.
 pub(super) fn is_open_against(
     state: &State,
     contact: &Contact,
     expected: f64,
+    tolerance: f64,
     axes: usize,
 ) -> bool {
     let State { world, candidates, .. } = state;
-    let tolerance = candidates.gap_tolerance();
     expected < tolerance
         && contact.gap_now(world, candidates, axes).is_some_and(|gap| gap >= tolerance)
 }

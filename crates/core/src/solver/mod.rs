@@ -42,5 +42,7 @@ pub use problem::{
     VelocityError, for_each_row, measure, relative_velocities, residual, velocity_error, worst,
 };
 pub use settings::{FrictionModel, SolverChanges, SolverSettings, StopTest};
-pub use solutions::{Solution, SolutionSearch, velocity_distance};
+pub use solutions::{
+    Solution, SolutionSearch, distance_to_velocities, velocities, velocity_distance,
+};
 pub use solve::solve;

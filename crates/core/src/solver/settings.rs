@@ -24,7 +24,6 @@ words! {
     #[derive(Default)]
     pub enum FrictionModel {
         #[default]
-        OfMethod = "of-method", "tresca where the solver is auto, else coulomb";
         Coulomb = "coulomb",
             "Coulomb's law itself (M. Jean, 1999); not convex, so a large step may not be solved in any time";
         Tresca = "tresca",
@@ -45,9 +44,6 @@ impl StopTest {
 }
 
 impl FrictionModel {
-    /// Those that a step can be solved under.
-    pub const SOLVED: [Self; 4] = [Self::Coulomb, Self::Tresca, Self::Associated, Self::Desaxce];
-
     /// True where it has lagged numbers that a further solve of the same step takes anew.
     pub fn is_taken_anew(self) -> bool {
         matches!(self, Self::Tresca | Self::Desaxce)
@@ -63,8 +59,9 @@ impl FrictionModel {
 settings! {
     /// Method, stopping test and limits. Plain data, checked where a simulation takes them on.
     ///
-    /// By default each step is solved within bounds of friction, to velocities that differ from those of the solution by a
-    /// share of √(g d) that no slump of a pile feels. Coulomb's law may have others ([`Measures::velocity_error`](super::Measures)).
+    /// By default each step is solved under Coulomb's law, to velocities that are estimated to differ from those of a solution
+    /// by 1e-4 √(g d), which no slump of a pile feels. A flowing step of thousands of grains is left with a larger error,
+    /// which is reported ([`Measures::velocity_error`](super::Measures)).
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Method that solves each step", {
@@ -92,7 +89,7 @@ settings! {
         }
         /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not
         /// converged.
-        max_sweeps: u32 = 5_000, "max-sweeps", "A step that needs more sweeps is reported as not converged", {
+        max_sweeps: u32 = 5_000, "max-sweeps", "A step that needs more sweeps is reported as not converged; solver auto may give up earlier", {
             allowed: "at least 1",
             holds: |value| value > 0,
             control: Some(Control {
@@ -106,7 +103,7 @@ settings! {
         warm_start: bool = true, "warm-start", "Whether each step starts from the impulses of the one before", {
             control: shown("Warm start", "Each step starts from the impulses of the one before."),
         }
-        friction_model: FrictionModel = FrictionModel::OfMethod, "friction-model" ("MODEL"),
+        friction_model: FrictionModel = FrictionModel::Coulomb, "friction-model" ("MODEL"),
             "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
              `slump list` says what each gets wrong", {
             needs: Needs::Friction,
@@ -142,6 +139,9 @@ impl SolverSettings {
     pub const SWEEPS: Self =
         Self { stop: StopTest::RelativeChange, ..Self::to_residual(Method::Nsgs, 1e-6, 5_000) };
 
+    /// The default within bounds of friction, a convex problem that is solved at any size.
+    pub const BOUNDED: Self = Self { friction_model: FrictionModel::Tresca, ..Self::DEFAULT };
+
     /// The paper's scheme: such sweeps, to the relative change at which its verdicts no longer hang on the solver.
     pub const PAPER: Self = Self { tolerance: 1e-7, ..Self::SWEEPS };
 
@@ -167,7 +167,7 @@ impl SolverSettings {
     /// Names the field, its value and what it may be.
     pub fn validate(&self) -> Result<()> {
         self.validate_each()?;
-        let (method, friction_model) = (self.method, self.model());
+        let (method, friction_model) = (self.method, self.friction_model);
         if friction_model != FrictionModel::Coulomb && !method.info().takes_models {
             let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
             let takers: Vec<_> = takers.collect();
@@ -180,26 +180,17 @@ impl SolverSettings {
         Ok(())
     }
 
-    /// The model of friction that steps are solved under.
-    pub fn model(&self) -> FrictionModel {
-        match self.friction_model {
-            FrictionModel::OfMethod if self.method == Method::Auto => FrictionModel::Tresca,
-            FrictionModel::OfMethod => FrictionModel::Coulomb,
-            model => model,
-        }
+    /// True if steps are solved under another model of friction than Coulomb's law.
+    pub(crate) fn solves_models(&self) -> bool {
+        self.friction_model != FrictionModel::Coulomb
     }
 
-    /// True where steps may be solved under another model of friction than Coulomb's law.
-    pub(crate) fn may_solve_models(&self) -> bool {
-        self.model() != FrictionModel::Coulomb
-    }
-
-    /// The same without a model of friction of its own, which leaves it to the method.
+    /// The same under Coulomb's law.
     pub(crate) fn without_model(self) -> Self {
-        Self { friction_model: FrictionModel::OfMethod, ..self }
+        Self { friction_model: FrictionModel::Coulomb, ..self }
     }
 
-    /// The same by another method, without a model of friction where that takes none.
+    /// The same by another method, under Coulomb's law if that takes no models of friction.
     pub fn by(self, method: Method) -> Self {
         let by_it = Self { method, ..self };
         if method.info().takes_models { by_it } else { by_it.without_model() }

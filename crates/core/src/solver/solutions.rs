@@ -9,13 +9,16 @@ use rand_pcg::Pcg64;
 
 use super::kinematics::Model;
 use super::method::Method;
-use super::methods::{Memory, picked};
+use super::methods::Memory;
 use super::problem::{StepProblem, measure, residual};
-use super::settings::{FrictionModel, SolverSettings};
+use super::settings::SolverSettings;
 use super::solve::solve;
 
-/// Newton's steps at the end of each search at the most.
-const NEWTON_STEPS: u32 = 100;
+/// Sweeps of Newton's method at the end of each search at the most.
+const NEWTON_STEPS: u32 = 400;
+
+/// Searches end with it up to this number of contacts.
+const CONTACTS_FOR_NEWTON: usize = 10_000;
 
 /// How solutions are looked for.
 #[derive(Clone, Copy, Debug)]
@@ -75,11 +78,11 @@ impl SolutionSearch {
         let sweeps = SolverSettings::to_residual(Method::Nncg, self.tolerance, self.max_sweeps);
         let report = solve(&mut found, &mut memory, &sweeps);
         let mut left = residual(&found);
-        let auto = SolverSettings::to_residual(Method::Auto, self.tolerance, NEWTON_STEPS);
-        let method = picked(&auto, FrictionModel::Coulomb, found.rows.len(), found.is_driven());
-        if !report.converged && method == Method::Newton {
+        // Newton's method does not take walls that a force drives.
+        if !report.converged && found.rows.len() <= CONTACTS_FOR_NEWTON && !found.is_driven() {
             let mut nearer = found.clone();
-            solve(&mut nearer, &mut memory, &SolverSettings { method, ..auto });
+            let by_it = SolverSettings::to_residual(Method::Newton, self.tolerance, NEWTON_STEPS);
+            solve(&mut nearer, &mut memory, &by_it);
             let of_nearer = residual(&nearer);
             if of_nearer < left {
                 (found, left) = (nearer, of_nearer);
@@ -117,12 +120,22 @@ impl SolutionSearch {
 /// How far the velocities of two solutions of one problem are apart, m/s: the root mean square over the grains that touch
 /// something, weighted with mass; spins count with the radius of gyration.
 pub fn velocity_distance<M: Model>(one: &StepProblem<M>, other: &StepProblem<M>) -> f64 {
-    let grains = one.bodies.now.iter().zip(&other.bodies.now).zip(&one.bodies.masses);
+    distance_to_velocities(one, &velocities(other))
+}
+
+/// The same, to velocities that were taken down by [`velocities`]: the problem may be laid out for another method.
+pub fn distance_to_velocities<M: Model>(problem: &StepProblem<M>, others: &[[f64; 3]]) -> f64 {
+    let grains = problem.bodies.now.iter().zip(others).zip(&problem.bodies.masses);
     let squares = grains.map(|((one, other), mass)| {
-        let [one, other] = [one, other].map(M::coordinates);
+        let one = M::coordinates(one);
         let along = |axis: usize| M::INERTIA_OVER_MASS[axis] * (one[axis] - other[axis]).powi(2);
         mass * (0..M::DEGREES).map(along).sum::<f64>()
     });
-    let (squares, mass) = (squares.sum::<f64>(), one.touching_mass());
+    let (squares, mass) = (squares.sum::<f64>(), problem.touching_mass());
     if mass > 0.0 { (squares / mass).sqrt() } else { 0.0 }
+}
+
+/// The velocities of all grains by the coordinates of the model: m/s, and rad/s for spins.
+pub fn velocities<M: Model>(problem: &StepProblem<M>) -> Vec<[f64; 3]> {
+    problem.bodies.now.iter().map(M::coordinates).collect()
 }

@@ -125,6 +125,22 @@ settings! {
                 ..Control::PLAIN
             }),
         }
+        /// In mean diameters. Within the largest no third grain fits between two bonded ones.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        touch_tolerance: f64 = 0.0, "touch-tolerance" ("D"),
+            "Gap up to which grains touch, and pull if they cohere, in mean diameters; they push each other \
+             at gap 0 alone. 0 in the paper's scheme", {
+            allowed: "between 0 and 0.1 diameters",
+            holds: |value| (0.0..=0.1).contains(&value),
+            control: Some(Control {
+                label: "Touch tolerance",
+                symbol: "τ",
+                unit: "d",
+                hint: "Gap up to which grains touch, and pull if they cohere, in mean diameters.",
+                range: [0.0, 0.1],
+                ..Control::PLAIN
+            }),
+        }
         #[serde(default, skip_serializing_if = "is_zero")]
         tilt: f64 = 0.0, "tilt" ("DEGREES"),
             "Angle by which gravity is turned against how the scene has it, degrees: above 0 towards the right \

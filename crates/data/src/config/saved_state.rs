@@ -13,7 +13,7 @@ use crate::world::Gravity;
 /// What files begin with.
 const SEAL: Seal = Seal {
     magic: "slump-state ",
-    format: 5,
+    format: 6,
     what: "state",
     of: " of a run",
     form: "a state that --save or --checkpoint-every wrote",

@@ -14,7 +14,7 @@ pub(crate) enum Share {
     Grains,
     /// Of the laws that contacts obey.
     Law,
-    /// Of the method: the time step, and what steps leave unsolved.
+    /// Of the method: the time step, what steps leave unsolved, and where solves start.
     Method,
 }
 
@@ -32,8 +32,10 @@ impl Share {
 pub(crate) enum Cause {
     TimeStep,
     Unsolved,
+    Start,
     ContactLaw,
     Cone,
+    TouchTolerance,
     FrictionModel,
     RestitutionThreshold,
     Packing,
@@ -43,10 +45,12 @@ pub(crate) enum Cause {
 impl Cause {
     pub(crate) fn share(self) -> Share {
         match self {
-            Self::TimeStep | Self::Unsolved => Share::Method,
-            Self::ContactLaw | Self::Cone | Self::FrictionModel | Self::RestitutionThreshold => {
-                Share::Law
-            }
+            Self::TimeStep | Self::Unsolved | Self::Start => Share::Method,
+            Self::ContactLaw
+            | Self::Cone
+            | Self::TouchTolerance
+            | Self::FrictionModel
+            | Self::RestitutionThreshold => Share::Law,
             Self::Packing | Self::NumberOfGrains => Share::Grains,
         }
     }
@@ -55,8 +59,10 @@ impl Cause {
         match self {
             Self::TimeStep => "time step",
             Self::Unsolved => "what steps leave unsolved",
+            Self::Start => "where solves start",
             Self::ContactLaw => "contact law",
             Self::Cone => "cone of friction",
+            Self::TouchTolerance => "touch tolerance",
             Self::FrictionModel => "friction model",
             Self::RestitutionThreshold => "restitution threshold",
             Self::Packing => "packing",
@@ -80,9 +86,11 @@ pub(crate) struct Variant {
 
 /// Parts that Δt is divided by.
 pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
-/// How much better steps are solved, to see what they leave unsolved: a bound on velocities of 1e-7 √(g d) is more than
-/// rounding lets some steps have.
+/// How much better than by default steps are solved, to see what they leave unsolved: some steps cannot be solved to 1e-7 √(g d)
+/// because of rounding.
 const TIGHTER: f64 = 1e-2;
+/// Other than no touch tolerance, in mean diameters: more than what a step leaves unsolved, less than grains are rough.
+const TOUCH_TOLERANCE: f64 = 1e-3;
 /// Below about this many g·Δt restitution stands for no bounce that anyone could see.
 const THRESHOLD: f64 = 2.0;
 
@@ -100,10 +108,15 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
         }
     };
     if base.stepper.uses_method() {
-        let settings = tighter(base);
-        let certifies = settings.solver.model() != base.solver.model();
-        let label = if certifies { "steps certified" } else { "steps solved 100 times better" };
-        add(Cause::Unsolved, label.into(), settings, 2.0);
+        let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
+        let settings = tighter(base, is_driven);
+        let label = format!("steps solved by {}", settings.solver.method);
+        add(Cause::Unsolved, label, settings, 4.0);
+        // A step of a flowing pile has several solutions, and where a solve starts decides which it finds.
+        let mut settings = base;
+        settings.solver.warm_start ^= true;
+        let label = if base.solver.warm_start { "cold starts" } else { "warm starts" };
+        add(Cause::Start, label.into(), settings, 4.0);
     }
     for divisor in DIVISORS {
         let step = base.parameters.time_step_secs / f64::from(divisor);
@@ -126,9 +139,16 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
         };
         add(Cause::Cone, format!("cone {}", settings.parameters.cone), settings, 1.0);
     }
+    if coheres && base.stepper.reads("touch-tolerance") {
+        let mut settings = base;
+        let tolerance = if base.parameters.touch_tolerance > 0.0 { 0.0 } else { TOUCH_TOLERANCE };
+        settings.parameters.touch_tolerance = tolerance;
+        let label = format!("touch tolerance {} d", short(tolerance));
+        add(Cause::TouchTolerance, label, settings, 1.0);
+    }
     if rubs && base.stepper.reads("friction-model") {
         let mut settings = base;
-        let is_coulomb = base.solver.model() == FrictionModel::Coulomb;
+        let is_coulomb = base.solver.friction_model == FrictionModel::Coulomb;
         settings.solver.method = Method::Auto;
         settings.solver.friction_model =
             if is_coulomb { FrictionModel::Tresca } else { FrictionModel::Coulomb };
@@ -168,19 +188,22 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     all
 }
 
-/// The same problems solved so well that nothing is left of them.
-fn tighter(mut settings: Settings) -> Settings {
-    let solver = &mut settings.solver;
-    if solver.model() != FrictionModel::Coulomb {
-        solver.tolerance *= TIGHTER;
-    } else {
-        // Coulomb's law has solutions out of reach; within bounds of friction every step has one.
-        *solver = SolverSettings {
-            tolerance: TIGHTER * SolverSettings::DEFAULT.tolerance,
-            ..SolverSettings::DEFAULT
-        };
-    }
-    solver.max_sweeps = solver.max_sweeps.max(1_000);
+/// The same steps solved so well that next to nothing is left of them.
+fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
+    let solver = settings.solver;
+    let method = match solver.friction_model {
+        // Newton's method does not take walls that a force drives.
+        FrictionModel::Coulomb if is_driven => Method::Nncg,
+        FrictionModel::Coulomb => Method::Newton,
+        _ => Method::InteriorPoint,
+    };
+    settings.solver = SolverSettings {
+        method,
+        friction_model: solver.friction_model,
+        model_solves: solver.model_solves,
+        tolerance: TIGHTER * SolverSettings::DEFAULT.tolerance,
+        ..SolverSettings::DEFAULT
+    };
     settings
 }
 
@@ -230,9 +253,11 @@ mod tests {
             causes(&pile, Some(&new_pile)),
             [
                 Cause::Unsolved,
+                Cause::Start,
                 Cause::TimeStep,
                 Cause::ContactLaw,
                 Cause::Cone,
+                Cause::TouchTolerance,
                 Cause::FrictionModel,
                 Cause::RestitutionThreshold,
                 Cause::Packing,
@@ -240,10 +265,12 @@ mod tests {
             ]
         );
         pile.parameters.bond = 0.0;
-        assert!(!causes(&pile, None).contains(&Cause::Cone));
+        let of_dry = causes(&pile, None);
+        assert!(!of_dry.contains(&Cause::Cone) && !of_dry.contains(&Cause::TouchTolerance));
         pile.parameters.friction = 0.0;
         pile.parameters.restitution = 0.0;
-        assert_eq!(causes(&pile, None), [Cause::Unsolved, Cause::TimeStep, Cause::ContactLaw]);
+        let left = [Cause::Unsolved, Cause::Start, Cause::TimeStep, Cause::ContactLaw];
+        assert_eq!(causes(&pile, None), left);
         let drum = built_in("drum").unwrap();
         assert!(!causes(&drum, None).contains(&Cause::NumberOfGrains));
         // Walls that a force drives are moved by few steppers.
@@ -259,17 +286,21 @@ mod tests {
     }
 
     #[test]
-    fn what_steps_leave_unsolved_is_held_against_steps_that_are_solved_for_certain() {
+    fn what_steps_leave_unsolved_is_held_against_better_solved_steps_of_the_same_law() {
+        let bounded = SolverSettings::BOUNDED;
         for (solver, label) in [
-            (SolverSettings::default(), "steps solved 100 times better"),
-            (SolverSettings::PAPER, "steps certified"),
+            (SolverSettings::default(), "steps solved by newton"),
+            (SolverSettings::PAPER, "steps solved by newton"),
+            (bounded, "steps solved by interior-point"),
         ] {
             let mut pile = built_in("pile").unwrap();
             pile.solver = solver;
             let all = variants(&pile, None, false);
             let better = all.iter().find(|variant| variant.cause == Cause::Unsolved).unwrap();
             assert_eq!(better.label, label);
-            assert_eq!(better.settings.solver.model(), FrictionModel::Tresca);
+            let better = better.settings.solver;
+            assert_eq!(better.friction_model, solver.friction_model);
+            assert!(better.tolerance < SolverSettings::DEFAULT.tolerance);
         }
     }
 

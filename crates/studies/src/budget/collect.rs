@@ -10,8 +10,9 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::statistics::{Mean, mean, mean_with};
 
-/// Starts that a series has at least: fewer tell next to nothing of the scatter.
-const FIRST: usize = 4;
+/// Starts that a series has at least. A series ends when its interval is narrow, so that one whose few starts lie together by
+/// chance ends too early: with 4, 7.7 % of 3,000 made-up budgets see an effect though nothing has one, with 6, 5.4 %.
+const FIRST: usize = 6;
 /// Share of budgets in which an interval may not hold the true value, of all that a budget has.
 pub(super) const OUTSIDE: f64 = 0.05;
 /// Where no other width is asked for: this part of the value.

@@ -190,6 +190,9 @@ impl Words<'_> {
         };
         match row.kind {
             Cause::Unsolved => format!("What steps leave unsolved {effect}."),
+            Cause::Start => {
+                format!("Solves with {} in place of the scene's {effect}.", row.changed)
+            }
             Cause::ContactLaw => {
                 format!("The contact law {} in place of this one {effect}.", row.changed)
             }
@@ -197,13 +200,16 @@ impl Words<'_> {
             Cause::NumberOfGrains => format!("A pile of {} {effect}.", row.changed),
             Cause::Packing => format!("A pile {} {effect}.", row.changed),
             Cause::RestitutionThreshold => format!("{} {effect}.", row.changed),
-            Cause::Cone | Cause::TimeStep => format!("The {} {effect}.", row.changed),
+            Cause::Cone | Cause::TouchTolerance | Cause::TimeStep => {
+                format!("The {} {effect}.", row.changed)
+            }
         }
     }
 
     fn of_unseen(&self, row: &CauseRow) -> String {
         match row.kind {
             Cause::Unsolved => row.cause.to_owned(),
+            Cause::Start => row.changed.clone(),
             Cause::ContactLaw => format!("the contact law {}", row.changed),
             Cause::FrictionModel => format!("friction by {}", row.changed),
             Cause::NumberOfGrains => format!("a pile of {}", row.changed),
@@ -213,7 +219,9 @@ impl Words<'_> {
                 let first = letters.next().map(|letter| letter.to_ascii_lowercase());
                 first.into_iter().chain(letters).collect()
             }
-            Cause::Cone | Cause::TimeStep => format!("the {}", row.changed),
+            Cause::Cone | Cause::TouchTolerance | Cause::TimeStep => {
+                format!("the {}", row.changed)
+            }
         }
     }
 

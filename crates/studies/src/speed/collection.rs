@@ -49,6 +49,8 @@ pub(super) struct CollectionPlan {
     pub advance: SolverSettings,
     /// Contacts slower than this many g·Δt do not bounce; 0 in the paper's scheme.
     pub restitution_threshold: f64,
+    /// That of the scene if not given.
+    pub friction: Option<f64>,
 }
 
 impl CollectionPlan {
@@ -67,6 +69,7 @@ impl CollectionPlan {
             in_a_box: false,
             advance: ADVANCE,
             restitution_threshold,
+            friction: None,
         }
     }
 
@@ -75,7 +78,7 @@ impl CollectionPlan {
     }
 
     /// Steps at Δt = 1e-3 s of piles without cohesion and with, made quickly, as steep as that of 138 grains: beginning to
-    /// slump or, in their box, at rest. They stand in runs whose every step was certified under bounds of friction, so
+    /// slump or, in their box, at rest. They stand in runs whose every step was solved within bounds of friction, so
     /// that what a warm start takes over is the error of no method.
     pub(super) fn of_size(grains: usize, in_a_box: bool, quick: bool) -> Self {
         let times_secs = match (in_a_box, quick) {
@@ -100,6 +103,7 @@ impl CollectionPlan {
                 ..ADVANCE
             },
             restitution_threshold: 2.0,
+            friction: None,
         }
     }
 
@@ -110,12 +114,13 @@ impl CollectionPlan {
     }
 
     fn name(&self, config: &Config, time_secs: f64) -> String {
-        let Self { grains, in_a_box, restitution_threshold, .. } = self;
+        let Self { grains, in_a_box, restitution_threshold, friction, .. } = self;
         let ParameterChanges { bond, time_step_secs, .. } = config.parameters;
         let (bond, step) = (bond.unwrap_or_default(), time_step_secs.unwrap_or_default());
         let place = if *in_a_box { " in a box" } else { "" };
+        let friction = friction.map_or(String::new(), |it| format!(", μ {it}"));
         format!(
-            "{grains} grains{place}, Bond {bond}, dt {step:e}, t {time_secs}, threshold {restitution_threshold}"
+            "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time_secs}, threshold {restitution_threshold}"
         )
     }
 
@@ -136,6 +141,7 @@ impl CollectionPlan {
                     bond: Some(bond),
                     time_step_secs: Some(time_step_secs),
                     restitution_threshold: Some(self.restitution_threshold),
+                    friction: self.friction,
                     ..ParameterChanges::default()
                 };
                 configs.push(Config { source, parameters, ..Config::default() });

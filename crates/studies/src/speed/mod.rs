@@ -7,6 +7,7 @@
 
 mod collection;
 mod performance;
+mod several;
 mod simulations;
 mod solves;
 mod steps;
@@ -28,12 +29,14 @@ use crate::runner::Runner;
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ChartPart {
-    /// Residual against the time of a step
+    /// Error against the time of a step
     Step,
     /// Error of the slump against simulated seconds per second
     Simulation,
-    /// The same of steps of 500 to 10,000 grains, with certificates under `tresca`
+    /// Error against the time of a step, of 138 to 10,000 grains
     Size,
+    /// How many solutions steps have, and how far apart they are
+    Solutions,
 }
 
 /// What to chart, and how.
@@ -45,7 +48,7 @@ pub struct ChartOptions {
     /// Coarser, in a few minutes
     #[arg(long)]
     pub quick: bool,
-    /// Also race on steps of 500, 2,000 and 10,000 grains
+    /// Also race on steps of 138 to 10,000 grains, and look for the solutions that steps have
     #[arg(long)]
     pub large: bool,
     /// Chart these alone
@@ -108,15 +111,16 @@ pub fn chart_speed(options: &ChartOptions, version: &str) -> Result<()> {
     let bench = Bench { options, machine: Machine::this(version)? };
     let is_wanted = |part| match part {
         _ if !options.only.is_empty() => options.only.contains(&part),
-        ChartPart::Size => options.large,
+        ChartPart::Size | ChartPart::Solutions => options.large,
         ChartPart::Step | ChartPart::Simulation => true,
     };
     let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
     type Make = fn(&Bench) -> Result<Vec<ChartSection>>;
-    let makers: [(ChartPart, &str, Make); 3] = [
+    let makers: [(ChartPart, &str, Make); 4] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
         (ChartPart::Size, "Steps by size", steps::make_sizes),
+        (ChartPart::Solutions, "Solutions of a step", several::make),
     ];
     for (_, title, make) in makers.into_iter().filter(|(part, ..)| is_wanted(*part)) {
         let begun = Instant::now();

@@ -17,20 +17,6 @@ pub(super) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f6
     (count > 0).then(|| (sum / count as f64).exp())
 }
 
-/// The median where what failed counts as longer than any time; `None` where half failed.
-pub(super) fn median_with_failures(timings: &[Timing]) -> Option<f64> {
-    let secs = |timing: &Timing| if timing.solved { timing.secs } else { f64::INFINITY };
-    let mut all: Vec<f64> = timings.iter().map(secs).collect();
-    all.sort_by(f64::total_cmp);
-    let middle = all.len() / 2;
-    let median = match all.len() {
-        0 => return None,
-        odd if odd % 2 == 1 => all[middle],
-        _ => 0.5 * (all[middle - 1] + all[middle]),
-    };
-    median.is_finite().then_some(median)
-}
-
 pub(super) fn share_solved(timings: &[Timing]) -> f64 {
     let solved = timings.iter().filter(|timing| timing.solved).count();
     solved as f64 / timings.len().max(1) as f64
@@ -56,14 +42,10 @@ mod tests {
     }
 
     #[test]
-    fn geometric_means_and_medians() {
+    fn geometric_means() {
         let mean = geometric_mean([1.0, 10.0, 100.0]).expect("a mean");
         assert!((mean - 10.0).abs() < 1e-12);
         assert_eq!(geometric_mean([]), None);
-        assert_eq!(median_with_failures(&[solved(3.0), failed(0.1), solved(1.0)]), Some(3.0));
-        assert_eq!(median_with_failures(&[solved(3.0), solved(1.0)]), Some(2.0));
-        assert_eq!(median_with_failures(&[solved(3.0), failed(0.1)]), None, "half failed");
-        assert_eq!(median_with_failures(&[]), None);
         assert_eq!(share_solved(&[solved(1.0), failed(1.0), solved(2.0), solved(9.0)]), 0.75);
     }
 

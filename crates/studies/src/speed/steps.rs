@@ -1,46 +1,56 @@
-//! Speed against accuracy of single steps: residual against time.
+//! Speed against accuracy of single steps: distance to Coulomb's law against time.
+
+use serde::{Deserialize, Serialize};
 
 use super::collection::{CollectionPlan, collect};
-use super::performance::{Timing, geometric_mean, median_with_failures, share_solved, speed_ratio};
+use super::performance::{Timing, geometric_mean, share_solved, speed_ratio};
 use super::solves::{
-    LEAST_REPEATS, LONG_SOLVE_SECS, MOST_SWEEPS, ROUNDING, SolveTimer, TimedSolves,
+    LEAST_REPEATS, LONG_SOLVE_SECS, ReferenceSearch, References, SolveTimer, TimedSolves,
 };
 use super::variants::{self, ChartedVariant, Family};
 use super::{Bench, ChartSection};
-use crate::chart::{Axis, Chart, Layer, Look, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, pareto_front, points};
 use crate::error::Result;
 use crate::report::ReportTable;
 use crate::runner::{Case, Runner, Threads};
-use crate::solver::{FrictionModel, Method, Ordering};
+use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 
 /// Threshold of restitution with which nearly every step has a solution.
 const THRESHOLD: f64 = 2.0;
-const REPORTED: [f64; 3] = [1e-3, 1e-6, 1e-8];
+/// √(g d).
+const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
-/// A warm start below this residual leaves next to nothing to be told about a method: the pile rests.
-const FAR: f64 = 1e-3;
-const SIZES: [usize; 3] = [500, 2_000, 10_000];
+const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
+/// Errors below it, √(g d), are drawn there.
+const LEAST_ERROR: f64 = 1e-8;
+const BAND: Rgb = (225, 225, 225);
+
+/// How the solutions of a step are looked for. With more starts more of them are found.
+const SEARCH: SolutionSearch =
+    SolutionSearch { starts: 4, seed: 1, max_sweeps: 30_000, tolerance: 1e-12 };
+
+/// One step: its solutions, and what every variant comes to.
+#[derive(Clone, Serialize, Deserialize)]
+struct TimedStep {
+    references: References,
+    solves: Vec<TimedSolves>,
+}
 
 /// A collection of steps, and what every variant made of it.
-#[derive(Clone)]
 struct TimedCollection {
     title: String,
     /// Most time of a solve, s.
     limit_secs: f64,
     problems: Vec<String>,
     variants: Vec<ChartedVariant>,
-    /// By variant, then by step.
-    solves: Vec<Vec<TimedSolves>>,
+    steps: Vec<TimedStep>,
 }
 
 /// Times all variants over steps of 138 grains.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let quick = bench.options.quick;
-    let timer = CollectionTimer {
-        variants: variants::of_problems(!quick),
-        goals: residuals_asked_for(quick),
-    };
-    let limit_secs = if quick { 0.25 } else { 3.0 };
+    let timer = CollectionTimer { variants: with_bounds(variants::of_problems(!quick)) };
+    let limit_secs = if quick { 0.02 } else { 0.2 };
     let pick = if quick { CollectionPlan::fewer_piles } else { CollectionPlan::piles };
     let mut all = Vec::new();
     for (label, threshold, title) in [
@@ -52,14 +62,10 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
 
-/// Times all variants over steps of larger piles, which begin to slump or rest in their box: under Coulomb's law, and
-/// under a convex model.
+/// Times all variants over steps of piles of all sizes, which begin to slump or rest in their box.
 pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     let quick = bench.options.quick;
-    let mut variants = variants::of_problems(false);
-    let models = variants::models().into_iter();
-    variants.extend(models.filter(|one| one.solver.friction_model == FrictionModel::Tresca));
-    let timer = CollectionTimer { variants, goals: REPORTED.to_vec() };
+    let timer = CollectionTimer { variants: with_bounds(variants::of_problems(false)) };
     let mut sections = Vec::new();
     for (name, in_a_box, state) in
         [("chart-size-moving", false, "that begin to slump"), ("chart-size-rest", true, "at rest")]
@@ -67,7 +73,7 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
         let mut all = Vec::new();
         for grains in SIZES {
             let plan = CollectionPlan::of_size(grains, in_a_box, quick);
-            let limit_secs = if quick { 1e-4 } else { 1e-3 } * grains as f64;
+            let limit_secs = if quick { 1e-4 } else { 5e-4 } * grains as f64;
             let title = format!("steps of {grains} grains {state}");
             all.push(timer.time(bench, "sizes", &plan, &title, limit_secs)?);
         }
@@ -76,13 +82,19 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(sections)
 }
 
+/// Bounds of friction as well, by sweeps and by the interior point.
+fn with_bounds(mut variants: Vec<ChartedVariant>) -> Vec<ChartedVariant> {
+    let models = variants::models().into_iter();
+    variants.extend(models.filter(|one| one.solver.friction_model == FrictionModel::Tresca));
+    variants
+}
+
 struct CollectionTimer {
     variants: Vec<ChartedVariant>,
-    goals: Vec<f64>,
 }
 
 impl CollectionTimer {
-    /// Times every variant on every step, one after the other, but for what the journal of that name has.
+    /// Times every variant on every step, one after the other, except the steps that the journal of that name has.
     fn time(
         &self,
         bench: &Bench,
@@ -91,164 +103,163 @@ impl CollectionTimer {
         title: &str,
         limit_secs: f64,
     ) -> Result<TimedCollection> {
-        let Self { variants, goals } = self;
-        let runner: Runner<TimedSolves> = bench.runner(journal)?;
+        let runner: Runner<TimedStep> = bench.runner(journal)?;
         let problems = plan.names();
-        let mut cases: Vec<Case<(usize, &ChartedVariant)>> = Vec::new();
-        for (step, name) in problems.iter().enumerate() {
-            cases.extend(variants.iter().map(|variant| {
-                let key = format!("{name}, {}", variant.name);
-                Case { key, cost: 1.0, setup: (step, variant) }
-            }));
-        }
+        let case = |(setup, key): (usize, &String)| Case { key: key.clone(), cost: 1.0, setup };
+        let cases: Vec<Case<usize>> = problems.iter().enumerate().map(case).collect();
         let is_finished = cases.iter().all(|case| runner.has(&case.key));
         let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
-        let results = runner.run(&cases, Threads::One, |&(step, variant)| {
-            SolveTimer { variant, goals, limit_secs }.time(&steps[step])
+        let results = runner.run(&cases, Threads::One, |&step| {
+            let step = &steps[step];
+            let references = step.next_problem(ReferenceSearch(SEARCH));
+            let timers = self.variants.iter();
+            let timers =
+                timers.map(|variant| SolveTimer { variant, references: &references, limit_secs });
+            let solves = timers.map(|timer| timer.time(step)).collect::<Result<_>>()?;
+            Ok(TimedStep { references, solves })
         })?;
-        let mut solves: Vec<Vec<TimedSolves>> = variants.iter().map(|_| Vec::new()).collect();
-        for (index, case) in results.into_iter().enumerate() {
-            solves[index % variants.len()].push(case.result);
-        }
-        let title = format!("{} {title}", problems.len());
-        Ok(TimedCollection { title, limit_secs, problems, variants: variants.clone(), solves })
+        Ok(TimedCollection {
+            title: format!("{} {title}", problems.len()),
+            limit_secs,
+            problems,
+            variants: self.variants.clone(),
+            steps: results.into_iter().map(|case| case.result).collect(),
+        })
     }
 
     fn section(&self, bench: &Bench, name: &str, all: &[TimedCollection]) -> ChartSection {
-        let goals = &self.goals;
         ChartSection {
             name: name.to_owned(),
-            sheet: residuals_sheet(bench, all, goals),
+            sheet: errors_sheet(bench, all),
             words: words(all),
             summary: summary(name, all),
-            others: vec![times(name, all, goals)],
+            others: vec![efforts(name, all)],
         }
     }
 }
 
-/// Residuals by half decades, or, in the quick pass, decades.
-fn residuals_asked_for(quick: bool) -> Vec<f64> {
-    let per_decade = if quick { 1 } else { 2 };
-    // Written out in decimals, so that 1e-3 is 1e-3.
-    let residual = |index: i32| {
-        let exact = 10f64.powf(-1.0 - f64::from(index) / f64::from(per_decade));
-        format!("{exact:.2e}").parse().unwrap_or(exact)
-    };
-    (0..=9 * per_decade).map(residual).collect()
-}
-
 impl TimedCollection {
-    fn timings(&self, variant: usize, goal: f64) -> Vec<Timing> {
-        self.solves[variant].iter().map(|solves| solves.timing(goal)).collect()
+    fn timings(&self, variant: usize, error: f64) -> Vec<Timing> {
+        self.steps.iter().map(|step| step.solves[variant].timing(error)).collect()
     }
 
-    /// The steps that begin far from their solution.
-    fn far(&self) -> Self {
-        let far = |solves: &Vec<TimedSolves>| -> Vec<TimedSolves> {
-            solves.iter().filter(|solves| solves.start > FAR).cloned().collect()
-        };
-        let solves: Vec<_> = self.solves.iter().map(far).collect();
-        let count = solves.first().map_or(0, Vec::len);
-        let title = format!("the {count} of them that begin with a residual above {FAR:e}");
-        Self { title, solves, ..self.clone() }
+    /// The median over the steps of what each step's references have.
+    fn of_references(&self, number: fn(&References) -> f64) -> f64 {
+        median(self.steps.iter().map(|step| number(&step.references)).collect())
     }
 
-    /// The smallest residual that any method reached, step by step, rising.
-    fn floors(&self) -> Vec<f64> {
-        let steps = self.solves.first().map_or(0, Vec::len);
-        let smallest = |step: usize| {
-            self.solves.iter().map(|solves| solves[step].smallest).fold(f64::INFINITY, f64::min)
+    /// Median time, ms, and median error of each effort of a variant.
+    fn medians(&self, variant: usize) -> Vec<(f64, f64)> {
+        let solves = || self.steps.iter().map(|step| &step.solves[variant]);
+        let longest = solves().map(|solves| solves.0.len()).max().unwrap_or(0);
+        let point = |number: usize| {
+            let efforts: Vec<_> = solves().filter_map(|solves| solves.effort(number)).collect();
+            let secs = efforts.iter().map(|effort| effort.secs).collect();
+            let errors = efforts.iter().map(|effort| effort.error).collect();
+            (1e3 * median(secs), median(errors).max(LEAST_ERROR))
         };
-        let mut floors: Vec<f64> = (0..steps).map(smallest).collect();
-        floors.sort_by(f64::total_cmp);
-        floors
+        (0..longest).map(point).collect()
     }
 
-    /// Residuals that a family reaches against the median time of its fastest member, ms.
-    fn medians(&self, family: Family, goals: &[f64]) -> Vec<(f64, f64)> {
-        let its = || (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
-        let point = |&goal: &f64| {
-            let times = its().filter_map(|one| median_with_failures(&self.timings(one, goal)));
-            Some((1e3 * times.reduce(f64::min)?, goal))
-        };
-        goals.iter().filter_map(point).collect()
+    /// What a family comes to at best for its time: time, ms, and error, the dearest last.
+    fn front(&self, family: Family) -> Vec<(f64, f64)> {
+        let its = (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
+        let all: Vec<(f64, f64)> = its.flat_map(|one| self.medians(one)).collect();
+        let by_speed: Vec<_> = all.iter().map(|(time, error)| (1.0 / time, *error)).collect();
+        pareto_front(&by_speed).into_iter().rev().map(|index| all[index]).collect()
     }
 }
 
-fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> Sheet {
-    let tightest = goals.iter().copied().fold(1.0, f64::min);
-    let loosest = goals.iter().copied().fold(0.0, f64::max);
+/// Of an even number the larger of the two in the middle; of nothing 0.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
     let mut charts = Vec::new();
     for timed in all {
-        let curves = Family::ALL.map(|family| (family, timed.medians(family, goals)));
+        let curves = Family::ALL.map(|family| (family, timed.front(family)));
         let times = || curves.iter().flat_map(|(_, curve)| curve).map(|(time, _)| *time);
         let least = times().fold(f64::INFINITY, f64::min).min(1.0);
         let most = times().fold(0.0, f64::max).max(10.0 * least);
         let mut chart = Chart::new(
             timed.title.clone(),
             // Room for the names of curves.
-            Axis::log("time of a step (ms)", 0.7 * least, 8.0 * most),
-            // Room for names above, too.
-            Axis::log("residual", 0.4 * tightest, 8.0 * loosest),
+            Axis::log("time of a step (ms)", 0.7 * least, 12.0 * most),
+            Axis::log("error against Coulomb's law, √(g d)", 0.5 * LEAST_ERROR, 3.0),
         );
+        let floor = timed.of_references(References::floor);
+        if floor > LEAST_ERROR {
+            let (x, y) = ([chart.x.from, chart.x.to], [chart.y.from, floor]);
+            let cell = MapCell { x: (x[0], x), y: (floor, y), value: floor };
+            let name = "not told apart".to_owned();
+            chart.layers.push(Layer::Cells { name, cells: vec![cell], colour: |_| BAND });
+        }
         let mut ends = Vec::new();
         for (family, curve) in curves {
             let end = curve.last();
             ends.extend(end.map(|&end| (family.name().to_owned(), family.colour(), end)));
+            let look = if family == Family::Default { Look::Dots(7) } else { Look::LineAndDots };
             let (name, curve) = (family.name(), points(curve));
-            chart.layers.push(Layer::quiet(name, curve, family.colour(), Look::LineAndDots));
+            chart.layers.push(Layer::quiet(name, curve, family.colour(), look));
         }
         chart.add_end_labels(ends);
         charts.push(chart);
     }
     let charted = all.first().map_or(&[][..], |timed| &timed.variants);
     let caption = bench.caption(&[
-        "The fastest member of each family, to each residual: median time, warm start. A curve ends where no member solves \
-         half of the steps any further.",
+        "Median error against median time of the best member of each family, with 1, 2, 4, 8 … sweeps or factorisations, \
+         warm start. The error is the distance to the nearest solution of Coulomb's law that was found.",
+        "Grey: below what tells methods apart, in the median over the steps: the largest distance of two solutions of a step, \
+         or how far the solutions that were found are estimated to be from true ones.",
         &variants::members(charted),
     ]);
-    Sheet { size: (600 * charts.len() as u32, 600), charts, caption }
+    Sheet { size: (500 * charts.len().max(2) as u32, 600), charts, caption }
 }
 
-/// How the steps were timed, and the residual floors of each collection.
+/// How the steps were timed, and how many solutions those of each collection have.
 fn words(all: &[TimedCollection]) -> String {
     let mut lines = vec![format!(
-        "Times are minima of at least {LEAST_REPEATS} repeats, but for solves of more than {LONG_SOLVE_SECS} s; means \
-         geometric. A solve is given up after {MOST_SWEEPS} sweeps or a limit of time; where nsgs gave up, the \
-         time it took until then stands for the time it would need, and the ratio is a lower bound.\n"
+        "Errors are distances of velocities to the nearest of the solutions that {} starts led to, in √(g d). Times are \
+         minima of at least {LEAST_REPEATS} repeats, except for solves of more than {LONG_SOLVE_SECS} s; means geometric. \
+         Where nsgs gave up, the time that it took until then stands for the time that it would need, and the ratio is a \
+         lower bound.\n",
+        SEARCH.starts
     )];
     for timed in all {
-        let floors = timed.floors();
-        let share = |below: f64| {
-            let count = floors.iter().filter(|floor| **floor <= below * (1.0 + ROUNDING)).count();
-            format!("{below:e} in {:.0} %", 100.0 * count as f64 / floors.len().max(1) as f64)
+        let several = timed.steps.iter().filter(|step| step.references.found > 1).count();
+        let largest = |number: fn(&References) -> f64| {
+            let all = timed.steps.iter().map(|step| number(&step.references));
+            all.fold(0.0, f64::max)
         };
         lines.push(format!(
-            "* {}, each given up after about {} s: smallest residual that any method reached at most {}; largest {:.1e}.",
+            "* {}, with up to some {:.2} s a solve: {several} with several solutions, {:.0e} apart at most; those found are \
+             estimated to be within {:.0e} of true ones in the median and {:.0e} at most.",
             timed.title,
             timed.limit_secs,
-            [1e-10, 1e-8, 1e-6, 1e-3].map(share).join(", "),
-            floors.last().copied().unwrap_or(0.0)
+            largest(|references| references.spread),
+            timed.of_references(|references| references.told),
+            largest(|references| references.told),
         ));
     }
     lines.join("\n")
 }
 
-/// What each variant comes to: over all steps, and over those that begin far from their solution.
+/// What each variant comes to.
 fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
-    let columns = "collection method residual share_solved mean_ms ratio_to_nsgs_at_least";
+    let columns = "collection method error share_reached mean_ms ratio_to_nsgs_at_least";
     let mut rows = Vec::new();
-    let parts = all.iter().flat_map(|all| [all.clone(), all.far()]);
-    for timed in parts.filter(|timed| !timed.solves[0].is_empty()) {
+    for timed in all {
         let is_base = |one: &ChartedVariant| (one.solver.method, one.solver.ordering) == BASE;
         let base = timed.variants.iter().position(is_base).unwrap_or(0);
-        for goal in REPORTED {
+        for error in REPORTED {
             for (number, variant) in timed.variants.iter().enumerate() {
-                let timings = timed.timings(number, goal);
+                let timings = timed.timings(number, error);
                 let solved = timings.iter().filter(|timing| timing.solved);
                 let mean_ms = geometric_mean(solved.map(|timing| 1e3 * timing.secs));
-                let ratio = speed_ratio(&timed.timings(base, goal), &timings);
-                let mut row = vec![timed.title.clone(), variant.name.clone(), format!("{goal:e}")];
+                let ratio = speed_ratio(&timed.timings(base, error), &timings);
+                let mut row = vec![timed.title.clone(), variant.name.clone(), format!("{error:e}")];
                 row.push(format!("{:.3}", share_solved(&timings)));
                 row.extend(
                     [mean_ms, ratio].map(|x| x.map_or(String::new(), |x| format!("{x:.4}"))),
@@ -260,30 +271,58 @@ fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
     ReportTable { name: format!("{name}-ratios"), columns: columns.split(' ').collect(), rows }
 }
 
-fn times(name: &str, all: &[TimedCollection], goals: &[f64]) -> ReportTable {
-    let columns = "problem contacts start_residual method residual seconds solved smallest_residual velocity_error";
+fn efforts(name: &str, all: &[TimedCollection]) -> ReportTable {
+    let columns = "problem solutions spread method sweeps seconds error";
     let mut rows = Vec::new();
     for timed in all {
-        for &goal in goals {
-            for (variant, solves) in timed.variants.iter().zip(&timed.solves) {
-                for (problem, solves) in timed.problems.iter().zip(solves) {
-                    let TimedSolves { contacts, start, smallest, .. } = solves;
-                    let Timing { secs, solved } = solves.timing(goal);
-                    let error = solves.reached(goal).map(|reached| reached.velocity_error);
-                    rows.push(vec![
+        for (problem, step) in timed.problems.iter().zip(&timed.steps) {
+            for (variant, solves) in timed.variants.iter().zip(&step.solves) {
+                rows.extend(solves.0.iter().map(|effort| {
+                    vec![
                         problem.clone(),
-                        contacts.to_string(),
-                        format!("{start:e}"),
+                        step.references.found.to_string(),
+                        format!("{:e}", step.references.spread),
                         variant.name.clone(),
-                        format!("{goal:e}"),
-                        format!("{secs:e}"),
-                        solved.to_string(),
-                        format!("{smallest:e}"),
-                        error.map_or(String::new(), |error| format!("{error:e}")),
-                    ]);
-                }
+                        effort.sweeps.to_string(),
+                        format!("{:e}", effort.secs),
+                        format!("{:e}", effort.error),
+                    ]
+                }));
             }
         }
     }
-    ReportTable { name: format!("{name}-times"), columns: columns.split(' ').collect(), rows }
+    ReportTable { name: format!("{name}-efforts"), columns: columns.split(' ').collect(), rows }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::solves::Effort;
+    use super::*;
+
+    #[test]
+    fn a_front_takes_the_best_of_a_family_and_a_solve_that_ended_stays_as_good() {
+        let solves = |efforts: &[(f64, f64)]| {
+            let effort = |&(secs, error): &(f64, f64)| Effort { sweeps: 1, secs, error };
+            TimedSolves(efforts.iter().map(effort).collect())
+        };
+        let variants = vec![variants::of_method(Method::Nsgs), variants::of_method(Method::Jacobi)];
+        let references =
+            serde_json::from_str(r#"{"found":1,"spread":0.0,"told":0.0,"residual":0.0}"#);
+        let references: References = references.expect("references");
+        let step = |nsgs: &[(f64, f64)]| TimedStep {
+            references: references.clone(),
+            solves: vec![solves(nsgs), solves(&[(2e-3, 0.5), (4e-3, 0.01)])],
+        };
+        let steps = vec![step(&[(1e-3, 0.2), (3e-3, 0.1), (5e-3, 0.0)]), step(&[(1e-3, 0.2)])];
+        let timed = TimedCollection {
+            title: String::new(),
+            limit_secs: 1.0,
+            problems: Vec::new(),
+            variants,
+            steps,
+        };
+        assert_eq!(timed.medians(0), [(1.0, 0.2), (3.0, 0.2), (5.0, 0.2)]);
+        assert_eq!(timed.front(Family::Sweeps), [(1.0, 0.2), (4.0, 0.01)]);
+        assert!(timed.front(Family::Newton).is_empty());
+    }
 }

@@ -4,9 +4,11 @@ use crate::chart::{PALETTE, Rgb};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
-/// Methods that do alike, which share a curve on a chart: six tell more than seventeen.
+/// Methods that do alike, which share a curve on a chart: seven tell more than eighteen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
+    /// What is taken if nothing is asked for.
+    Default,
     /// Row after row.
     Sweeps,
     /// By products with the whole problem alone.
@@ -22,12 +24,20 @@ pub(super) enum Family {
 }
 
 impl Family {
-    pub(super) const ALL: [Self; 6] =
-        [Self::Sweeps, Self::FirstOrder, Self::Newton, Self::Convex, Self::Range, Self::Penalties];
+    pub(super) const ALL: [Self; 7] = [
+        Self::Default,
+        Self::Sweeps,
+        Self::FirstOrder,
+        Self::Newton,
+        Self::Convex,
+        Self::Range,
+        Self::Penalties,
+    ];
 
     /// What a chart calls it.
     pub(super) fn name(self) -> &'static str {
         match self {
+            Self::Default => "default",
             Self::Sweeps => "sweeps",
             Self::FirstOrder => "first order",
             Self::Newton => "Newton",
@@ -67,7 +77,7 @@ fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }
 
-/// Every method of the registry, in its order, and every stepper without one; `auto` is one of the others.
+/// Every method of the registry, in its order, and every stepper without one.
 pub(super) fn all() -> Vec<ChartedVariant> {
     let mut variants = of_problems(false);
     variants.extend(without_method().map(|stepper| {
@@ -81,10 +91,16 @@ pub(super) fn of_method(method: Method) -> ChartedVariant {
     of_model(method, FrictionModel::Coulomb)
 }
 
+/// What solves a step if nothing is asked for: Coulomb's law, to a velocity error.
+pub(super) fn default() -> ChartedVariant {
+    let name = "default".to_owned();
+    ChartedVariant { name, stepper: Stepper::Moreau, solver: SolverSettings::default() }
+}
+
 /// Those that solve the problem of a step, and Gauss–Seidel in its other orders where `orders` are asked for.
 pub(super) fn of_problems(orders: bool) -> Vec<ChartedVariant> {
     let own = METHODS.iter().map(|info| info.method).filter(|method| *method != Method::Auto);
-    let mut variants: Vec<ChartedVariant> = own.map(of_method).collect();
+    let mut variants: Vec<ChartedVariant> = own.map(of_method).chain([default()]).collect();
     if orders {
         for ordering in [Ordering::BottomUp, Ordering::Detected, Ordering::Symmetric] {
             let mut variant = of_method(Method::Nsgs);
@@ -96,15 +112,14 @@ pub(super) fn of_problems(orders: bool) -> Vec<ChartedVariant> {
     variants
 }
 
-/// Models of friction in the place of Coulomb's law, by sweeps, and the one that piles do not tell from it by the
-/// method that certifies it. They solve another problem, so that whole simulations alone can tell what they are worth.
+/// Models of friction in the place of Coulomb's law, by sweeps, and bounds of friction by the interior point.
 pub(super) fn models() -> Vec<ChartedVariant> {
-    let models = FrictionModel::SOLVED.iter().filter(|model| **model != FrictionModel::Coulomb);
-    models.map(|&model| of_model(Method::Nsgs, model)).chain([certified()]).collect()
+    let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
+    models.map(|&model| of_model(Method::Nsgs, model)).chain([bounded()]).collect()
 }
 
-/// The convex model that piles do not tell from Coulomb's law, by the method that certifies it.
-pub(super) fn certified() -> ChartedVariant {
+/// Bounds of friction, whose convex problem is solved at any size.
+pub(super) fn bounded() -> ChartedVariant {
     of_model(Method::InteriorPoint, FrictionModel::Tresca)
 }
 
@@ -118,6 +133,11 @@ fn of_model(method: Method, friction_model: FrictionModel) -> ChartedVariant {
 }
 
 impl ChartedVariant {
+    /// True of [`default`], whose effort is its own affair.
+    pub(super) fn is_default(&self) -> bool {
+        self.solver.method == Method::Auto
+    }
+
     pub(super) fn method(&self) -> Option<Method> {
         self.stepper.uses_method().then_some(self.solver.method)
     }
@@ -127,9 +147,12 @@ impl ChartedVariant {
         SolverSettings { stop, tolerance, max_sweeps, warm_start: true, ..self.solver }
     }
 
-    /// Warm-started, with so many sweeps, whatever they come to.
+    /// Warm-started, with so many sweeps, whatever they come to; of the default its own settings.
     pub(super) fn sweeps(&self, count: u32) -> SolverSettings {
-        self.to_residual(f64::MIN_POSITIVE, count)
+        match self.is_default() {
+            true => self.solver,
+            false => self.to_residual(f64::MIN_POSITIVE, count),
+        }
     }
 
     pub(super) fn family(&self) -> Family {
@@ -143,9 +166,10 @@ impl ChartedVariant {
             return Family::Convex;
         }
         match self.solver.method {
+            Method::Auto => Family::Default,
             Method::Newton | Method::InteriorPoint => Family::Newton,
             Method::Nncg | Method::Apgd | Method::Admm => Family::FirstOrder,
-            Method::Nsgs | Method::NsgsParallel | Method::Jacobi | Method::Auto => Family::Sweeps,
+            Method::Nsgs | Method::NsgsParallel | Method::Jacobi => Family::Sweeps,
         }
     }
 }

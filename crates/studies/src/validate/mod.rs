@@ -72,7 +72,7 @@ pub struct ValidateOptions {
     /// The way to step, under which all is computed; but for moreau, experiments about methods are left out
     #[arg(long, value_name = "NAME", default_value = "moreau", value_parser = parser_of::<Stepper>())]
     pub stepper: Stepper,
-    /// Methods, each with every time step and effort [default: auto, which certifies each step; nsgs where an effort is given]
+    /// Methods, each with every time step and effort [default: auto, to a velocity error of 1e-4; nsgs if an effort is given]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
     pub methods: Vec<Method>,
     /// Time steps, seconds [default: 1e-3]

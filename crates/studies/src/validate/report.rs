@@ -217,7 +217,7 @@ fn look_of(variant: &StepVariant, variants: &[StepVariant]) -> (String, Rgb, Loo
     let radius = 6 + 2 * number as u32;
     let look = match variant.budget {
         SolveBudget::Sweeps(_) => Look::Dots(radius),
-        SolveBudget::Residual(_) | SolveBudget::Certified => Look::Rings(radius),
+        SolveBudget::Residual(_) | SolveBudget::Default => Look::Rings(radius),
     };
     let name = format!(
         "{}, Δt {:e} s\n{}",

@@ -10,7 +10,7 @@ use crate::solver::{Method, SolverSettings};
 /// Sweeps within which a step is to be solved to a residual.
 const MOST_SWEEPS: u32 = 1_000;
 
-/// What is run where nothing is asked for of a method that certifies nothing.
+/// What is run if no effort is given for a method that is not `auto`.
 const UNASKED: [SolveBudget; 2] = [SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +19,8 @@ pub(super) enum SolveBudget {
     Sweeps(u32),
     /// To this residual, within [`MOST_SWEEPS`].
     Residual(f64),
-    /// As every step is solved unasked: with a certificate of its velocities.
-    Certified,
+    /// As every step is solved by default: to an estimated error of its velocities.
+    Default,
 }
 
 impl SolveBudget {
@@ -29,7 +29,7 @@ impl SolveBudget {
             Self::Sweeps(1) => "1 sweep".to_owned(),
             Self::Sweeps(count) => format!("{count} sweeps"),
             Self::Residual(residual) => format!("residual {residual:e}"),
-            Self::Certified => "certified".to_owned(),
+            Self::Default => "velocity error 1e-4".to_owned(),
         }
     }
 }
@@ -65,7 +65,7 @@ impl StepVariant {
         scene.solver = match self.budget {
             SolveBudget::Sweeps(count) => to_residual(f64::MIN_POSITIVE, count),
             SolveBudget::Residual(residual) => to_residual(residual, MOST_SWEEPS),
-            SolveBudget::Certified => SolverSettings::default().by(self.method),
+            SolveBudget::Default => SolverSettings::default().by(self.method),
         };
         scene.set_settings(scene.settings().with_only_what_is_taken());
     }
@@ -115,7 +115,7 @@ pub(super) fn step_variants(
             let of = |&budget| StepVariant { stepper, method, time_step_secs, budget };
             let budgets = match (budgets.is_empty(), method) {
                 (false, _) => &budgets,
-                (true, Method::Auto) => &[SolveBudget::Certified][..],
+                (true, Method::Auto) => &[SolveBudget::Default][..],
                 (true, _) => &UNASKED,
             };
             variants.extend(budgets.iter().map(of));
@@ -155,7 +155,10 @@ mod tests {
         let one = step_variants(Stepper::Moreau, &[], &[], &[7], &[]).expect("a choice");
         assert!(one.len() == 1 && one[0].budget == SolveBudget::Sweeps(7));
         let auto = step_variants(Stepper::Moreau, &[], &[], &[], &[]).expect("a choice");
-        assert_eq!((auto.len(), auto[0].words()), (1, "auto, Δt 1e-3 s, certified".to_owned()));
+        assert_eq!(
+            (auto.len(), auto[0].words()),
+            (1, "auto, Δt 1e-3 s, velocity error 1e-4".to_owned())
+        );
         let mut scene = dry("packing", loose(10, 5.0, 1));
         scene.solver = SolverSettings::PAPER;
         auto[0].apply(&mut scene);
@@ -164,7 +167,7 @@ mod tests {
             let chosen = step_variants(stepper, &[], &[], &[], &[]).expect("a choice");
             chosen.iter().map(StepVariant::words).collect()
         };
-        assert_eq!(words(Stepper::Range), ["range, auto, Δt 1e-3 s, certified"]);
+        assert_eq!(words(Stepper::Range), ["range, auto, Δt 1e-3 s, velocity error 1e-4"]);
         assert_eq!(words(Stepper::Dem), ["dem, Δt 1e-3 s"]);
     }
 

@@ -4,16 +4,18 @@
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;
 use crate::sim::settings::Settings;
+use crate::sim::state::State;
 use crate::sim::steppers::StepperInfo;
 use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds;
 use crate::solver::{Approach, Model};
+use crate::world::Parameters;
 
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with cohesion and Coulomb's law",
     source: "A. Abramian, L. Staron, Time Steps v.s. Cohesion (2020); J. J. Moreau (1988)",
-    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold solver ordering stop tolerance \
-        max-sweeps warm-start friction-model model-solves",
+    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold touch-tolerance solver ordering \
+        stop tolerance max-sweeps warm-start friction-model model-solves",
     takes_drives: true,
     ..StepperInfo::WHOLE
 };
@@ -24,7 +26,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let mut result = stage.move_by(report, settings);
     stage.state.contacts.sum_up();
     remedies::after_step(stage, settings);
-    result.turned_bonds = turned_bonds::count(stage, settings.parameters.time_step_secs);
+    result.turned_bonds = turned_bonds::count(stage, &settings.parameters);
     result
 }
 
@@ -34,17 +36,52 @@ pub(in crate::sim) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Sett
     let world = stage.world();
     let gravity_magnitude = world.gravity.magnitude();
     let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
+    let tolerance = touch_tolerance(stage.state, &parameters);
+    let touching = touching_within(stage.state, tolerance);
     let rebound = |Approach { velocity, gap, in_touch }| {
-        if in_touch {
-            return parameters.restitution_velocity(velocity, gravity_magnitude);
+        if !in_touch {
+            // It lands in touch, so that the next step knows it.
+            return (gap + touch) / parameters.time_step_secs;
         }
-        // It lands in touch, so that the next step knows it.
-        (gap + touch) / parameters.time_step_secs
+        let rebound = parameters.restitution_velocity(velocity, gravity_magnitude);
+        if tolerance > 0.0 && gap > touching {
+            // What comes to the surface within the step bounces, as it does where it touches.
+            let meets = rebound < 0.0 && gap + parameters.time_step_secs * velocity < 0.0;
+            return if meets { rebound } else { gap / parameters.time_step_secs };
+        }
+        rebound
     };
     if settings.remedies.speculative {
-        let ahead = |state: &_| Some(remedies::look_ahead(state, parameters.time_step_secs));
+        let ahead = |state: &_| {
+            let ahead = remedies::look_ahead(state, parameters.time_step_secs);
+            Some(if tolerance > 0.0 { ahead.pulling_within(tolerance) } else { ahead })
+        };
         stage.prepare_ahead(settings, ahead, rebound);
+    } else if tolerance > 0.0 {
+        stage.prepare_within(settings, tolerance, rebound);
     } else {
         stage.prepare(settings, rebound);
     }
+}
+
+/// The gap up to which the law takes grains to touch, m, if contacts pull up to a tolerance.
+fn touching_within(state: &State, tolerance: f64) -> f64 {
+    let rounding = (0.5 * tolerance).min(TOUCH_IN_DIAMETERS * state.world.mean_diameter);
+    rounding.max(state.candidates.gap_tolerance())
+}
+
+/// The gap up to which contacts pull, m; 0 if that is no more than where they touch.
+///
+/// Within it a contact has the law of one that touches, but its grains may come to each other as far as the gap lets
+/// them:
+///
+/// > 0 ≤ P + C₀Δt ⟂ v_n + gap/Δt ≥ 0.
+///
+/// Gaps of half the tolerance, at most those of [`TOUCH_IN_DIAMETERS`], are rounding, within which grains touch: without
+/// that room a pyramid of logs falls. So a contact pulls by C₀ until its gap is closed, and a bond takes the work
+/// C₀ (τ + what the pair opens within a step) to break. A pair that turns opens by ½ω²Δt²·L a step ([`turned_bonds`]):
+/// below the tolerance the next step closes that.
+pub(in crate::sim) fn touch_tolerance(state: &State, parameters: &Parameters) -> f64 {
+    let tolerance = parameters.touch_tolerance * state.world.mean_diameter;
+    if tolerance > state.candidates.gap_tolerance() { tolerance } else { 0.0 }
 }

@@ -49,11 +49,12 @@ impl<M: Model> Substepping<M> {
         sweeps: u32,
     ) -> StepResult {
         let list = stage.state.contacts.contacts();
+        let tolerance = stage.state.candidates.gap_tolerance();
         let rows = contacts.iter().zip(&stage.problem.rows.contacts);
         let turned_bonds = rows.filter(|&(touching, &index)| {
             let Touching { impulse, capture_speed, gap, .. } = *touching;
             is_within_bounds(impulse[0], capture_speed)
-                && is_open_against(stage.state, &list[index as usize], gap, M::AXES)
+                && is_open_against(stage.state, &list[index as usize], gap, tolerance, M::AXES)
         });
         let turned_bonds = turned_bonds.count() as u64;
         StepResult { turned_bonds, ..self.end_step(stage, sweeps) }

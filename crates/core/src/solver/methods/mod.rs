@@ -15,19 +15,21 @@ mod nsgs_parallel;
 mod random_problem;
 mod stopping;
 mod sweep;
+mod wedged;
 
 pub(crate) use self::auto::picked;
 pub(crate) use self::contact_system::WorkVectors;
 pub use self::contact_system::{BodySystem, ContactSystem, ScaledVector};
 #[cfg(test)]
 pub(crate) use self::interior_point::solve_within_bounds;
+use self::newton::NewtonEffort;
 pub use self::nsgs::sweep;
 pub use self::stopping::SolveReport;
 pub(super) use self::stopping::sweep_until_settled;
 use super::kinematics::Model;
 use super::method::Method;
 use super::problem::StepProblem;
-use super::settings::SolverSettings;
+use super::settings::{FrictionModel, SolverSettings};
 
 /// What the methods keep from one solve to the next. Results do not depend on it.
 #[derive(Clone, Debug, Default)]
@@ -45,17 +47,43 @@ pub(super) fn solve_by_method<M: Model>(
     memory: &mut Memory,
     settings: &SolverSettings,
 ) -> SolveReport {
+    match settings.method {
+        Method::Auto => auto::solve(problem, memory, settings),
+        method => solve_by(method, problem, memory, settings, NewtonEffort::FULL),
+    }
+}
+
+/// Solves with a method that need not be that of the settings.
+fn solve_by<M: Model>(
+    method: Method,
+    problem: &mut StepProblem<M>,
+    memory: &mut Memory,
+    settings: &SolverSettings,
+    effort: NewtonEffort,
+) -> SolveReport {
     let Memory { nsgs_parallel: blocks, newton, admm, interior_point: path, vectors } = memory;
-    match picked(settings, problem.friction.model, problem.rows.len(), problem.is_driven()) {
+    match method {
         Method::Nsgs | Method::Auto => nsgs::solve(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve(problem, blocks, settings),
-        Method::Newton => newton::solve(problem, newton, vectors, settings),
+        Method::Newton => newton::solve(problem, newton, vectors, settings, effort),
         Method::Admm => admm::solve(problem, admm, settings),
+        Method::InteriorPoint
+            if M::FRICTION
+                && problem.law.friction == 0.0
+                && problem.friction.model == FrictionModel::Coulomb =>
+        {
+            // Within bounds of 0 the problem is convex, and it is the law's own.
+            problem.begin_friction(FrictionModel::Tresca);
+            let report =
+                interior_point::solve(problem, path, settings, |_, _| SolveReport::default());
+            problem.forget_bounds();
+            report
+        }
         Method::InteriorPoint => interior_point::solve(problem, path, settings, |problem, rest| {
-            // Newton's method knows of no walls that a force drives.
+            // Newton's method does not take walls that a force drives.
             match problem.is_driven() {
                 true => nncg::solve(&mut BodySystem::new(problem), rest, vectors),
-                false => newton::solve(problem, newton, vectors, rest),
+                false => newton::solve(problem, newton, vectors, rest, NewtonEffort::FULL),
             }
         }),
         Method::Nncg => nncg::solve(&mut BodySystem::new(problem), settings, vectors),

@@ -58,8 +58,19 @@ const MOST_SWEEPS_BETWEEN: u32 = 200;
 /// before. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339 are left without elimination in 60 s, and 878, 961, 875, 893
 /// and 921 with it after 0, 4, 8, 16 and 32 in 136, 124, 121, 120 and 100 s.
 const FACTORISATIONS_FIRST: u32 = 8;
-/// Factorisations without halving the best residual after which the solve is given up.
-const PATIENCE: u32 = 100;
+/// How long Newton's method is tried, and how long conjugate gradients after it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NewtonEffort {
+    /// Factorisations without halving the best residual after which the method is given up.
+    pub patience: u32,
+    /// Sweeps of conjugate gradients after that, within the limit of the settings.
+    pub sweeps_after: u32,
+}
+
+impl NewtonEffort {
+    /// As far as the limit of the settings goes.
+    pub(super) const FULL: Self = Self { patience: 100, sweeps_after: u32::MAX };
+}
 
 /// A step is accepted if its residual is below [`ENOUGH`] times the largest of this many before:
 /// the residual may rise for a few steps on the way down. With 1, steps are refused that lead on;
@@ -103,18 +114,20 @@ pub(super) fn solve<M: Model>(
     memory: &mut NewtonMemory,
     vectors: &mut WorkVectors,
     settings: &SolverSettings,
+    effort: NewtonEffort,
 ) -> SolveReport {
     let NewtonMemory { one, two, three } = memory;
     match M::DEGREES {
-        1 => Newton::<M, 1> { problem, settings, workspace: one, vectors }.run(),
-        2 => Newton::<M, 2> { problem, settings, workspace: two, vectors }.run(),
-        _ => Newton::<M, 3> { problem, settings, workspace: three, vectors }.run(),
+        1 => Newton::<M, 1> { problem, settings, effort, workspace: one, vectors }.run(),
+        2 => Newton::<M, 2> { problem, settings, effort, workspace: two, vectors }.run(),
+        _ => Newton::<M, 3> { problem, settings, effort, workspace: three, vectors }.run(),
     }
 }
 
 struct Newton<'a, M: Model, const D: usize> {
     problem: &'a mut StepProblem<M>,
     settings: &'a SolverSettings,
+    effort: NewtonEffort,
     workspace: &'a mut NewtonWorkspace<D>,
     /// Of the conjugate gradients that go on where Newton's method leads nowhere.
     vectors: &'a mut WorkVectors,
@@ -133,7 +146,8 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.workspace.best.clone_from(&self.workspace.saved);
         let mut compliance = FIRST_COMPLIANCE;
         let mut sweeps_between = SWEEPS_BETWEEN;
-        while report.sweeps + SWEEPS_AFTER <= most_sweeps && history.since_milestone < PATIENCE {
+        let patience = self.effort.patience;
+        while report.sweeps + SWEEPS_AFTER <= most_sweeps && history.since_milestone < patience {
             if is_ended(SolveProgress { sweeps: report.sweeps, residual: None }) {
                 break;
             }
@@ -182,10 +196,10 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         settles_in(self.problem, self.settings, sweeps, report)
     }
 
-    /// Where Newton's method leads nowhere, conjugate gradients use up the sweeps that are left:
-    /// they solve some of what it cannot, and tell where there is nothing to be solved.
+    /// If Newton's method gets no further, conjugate gradients use the sweeps that are left: they solve some of the
+    /// problems that it cannot solve, and they show if a problem has no solution.
     fn go_on_without(self, report: SolveReport) -> SolveReport {
-        let left = self.settings.max_sweeps - report.sweeps;
+        let left = (self.settings.max_sweeps - report.sweeps).min(self.effort.sweeps_after);
         if left == 0 {
             return report;
         }

@@ -24,7 +24,6 @@ use crate::solver::settings::FrictionModel;
 /// What is asked of friction in a step.
 #[derive(Clone, Debug)]
 pub(crate) struct LaggedFriction {
-    /// One of [`FrictionModel::SOLVED`].
     pub model: FrictionModel,
     /// The lagged number of each row, m/s; empty under Coulomb's law.
     pub now: Vec<f64>,
@@ -150,7 +149,7 @@ impl<M: Model> StepProblem<M> {
         self.friction.now.clear();
         match model {
             _ if !M::FRICTION => {}
-            FrictionModel::Coulomb | FrictionModel::OfMethod => {}
+            FrictionModel::Coulomb => {}
             FrictionModel::Tresca => self.renew_friction(),
             FrictionModel::Associated => self.friction.now.resize(self.rows.len(), 0.0),
             FrictionModel::Desaxce => {

@@ -127,7 +127,7 @@ impl<M: Model> StepProblem<M> {
             self.add_surfaces(contacts, &rebound, surfaces);
         }
         self.form_velocities();
-        self.begin_friction(settings.model());
+        self.begin_friction(settings.friction_model);
     }
 
     /// Packs the bodies as they are, and as gravity alone would leave them.

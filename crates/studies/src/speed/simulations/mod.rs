@@ -103,7 +103,7 @@ impl SimulationPlan {
             budgeted,
             laws: laws.to_vec(),
             repeats: if quick { 1 } else { 2 },
-            limit_secs: if quick { 0.8 } else { 10.0 },
+            limit_secs: if quick { 2.0 } else { 10.0 },
         }
     }
 
@@ -147,7 +147,9 @@ fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<Budgeted
         let mut add = |budget: String, solver, substeps| {
             budgeted.push(BudgetedVariant { variant: number, law, budget, solver, substeps });
         };
-        if variant.method().is_some() {
+        if variant.is_default() {
+            add("its own effort".to_owned(), variant.solver, 0);
+        } else if variant.method().is_some() {
             for &tolerance in residuals {
                 let solver = variant.to_residual(tolerance, MOST_SWEEPS);
                 add(format!("residual {tolerance:e}"), solver, 0);

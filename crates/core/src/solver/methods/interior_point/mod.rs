@@ -33,8 +33,6 @@ mod tests;
 
 use std::marker::PhantomData;
 
-use glam::DVec2;
-
 use self::contact::{
     Cone, ContactNumbers, HalfLine, Leaning, PAIRS, PathContact, PathStep, Shape, Strip,
 };
@@ -42,11 +40,12 @@ use self::proximal::ProximalContact;
 use self::system::StepMatrix;
 use super::nsgs::{settles_in, solve_models};
 use super::stopping::SolveReport;
+use super::wedged::{is_wedged, start_cold};
 use crate::contact::law;
 use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::linear::ContactGraph;
-use crate::solver::problem::{Bodies, StepProblem, natural_map, velocity_error};
+use crate::solver::problem::{StepProblem, natural_map, velocity_error};
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
@@ -68,12 +67,6 @@ const CENTRE: f64 = 1e3;
 const FURTHER_UP: f64 = 1e3;
 /// Bounds of friction below this share of the mean change are none: there is nothing between them to move in.
 const LEAST_BOUND: f64 = 1e-10;
-
-/// Beyond this μ impulses are taken for wedged. At 2.5 those of piles stay at 9 to 100 grain weights in the root mean square
-/// (5 to 7 from a cold start), the more the higher Bond is; at 3 and Bond 20 they come to 3e4 in 0.3 s.
-const WEDGING_FRICTION: f64 = 2.0;
-/// A contact that carries more than so many times what all bodies are given is wedged. Levers and arches come to a few times.
-const WEDGED: f64 = 3.0;
 
 /// A workspace for each number of degrees of freedom; those that are not used hold no memory.
 #[derive(Clone, Debug, Default)]
@@ -118,7 +111,7 @@ pub(super) fn solve<M: Model>(
     let mut is_first = true;
     solve_models(problem, settings, |problem| {
         if std::mem::take(&mut is_first) && is_wedged(problem) {
-            take_impulses_back(problem);
+            start_cold(problem);
         }
         match problem.friction.model {
             _ if !M::FRICTION => convex::<M, HalfLine>(problem, memory, settings),
@@ -129,40 +122,6 @@ pub(super) fn solve<M: Model>(
             _ => coulomb(problem, memory, settings, &mut go_on),
         }
     })
-}
-
-/// True where friction within lagged bounds may have wedged the impulses that a step begins with.
-///
-/// Discs in a ring press each other at will where friction holds them, and no velocity shows it. Of all such impulses
-/// the path leads to the middle, and under bounds that come from these the middle moves: for three discs, whose
-/// |λ| = σ tan 30° stays within the μσ of the solve before, by a factor μ a solve. So from some μ on impulses would grow
-/// from step to step until rounding bars the way.
-fn is_wedged<M: Model>(problem: &StepProblem<M>) -> bool {
-    if !M::FRICTION || problem.friction.model != FrictionModel::Tresca {
-        return false;
-    }
-    if problem.law.friction > WEDGING_FRICTION {
-        return true;
-    }
-    let Bodies { now, free, masses, .. } = &problem.bodies;
-    let bodies = now.iter().zip(free).zip(masses);
-    let given = bodies.map(|((now, free), mass)| {
-        let [now, free] = [now, free].map(M::coordinates);
-        mass * DVec2::new(now[0] - free[0], now[1] - free[1]).length()
-    });
-    let most = WEDGED * given.sum::<f64>();
-    problem
-        .rows()
-        .any(|(number, row)| row.effective_mass * problem.reduced_impulse(number, row)[0] > most)
-}
-
-fn take_impulses_back<M: Model>(problem: &mut StepProblem<M>) {
-    for number in 0..problem.rows.len() {
-        let capture_speed = problem.capture(number);
-        let row = problem.rows.get_mut(number);
-        (row.shifted_impulse, row.tangential_impulse) = (capture_speed, 0.0);
-    }
-    problem.form_velocities();
 }
 
 /// Solves a problem within the bounds of friction that it has.

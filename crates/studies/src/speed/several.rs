@@ -1,0 +1,184 @@
+//! How many solutions the steps of piles have under Coulomb's law, and how far apart they are.
+
+use super::collection::{CollectionPlan, collect};
+use super::solves::{ReferenceSearch, References};
+use super::{Bench, ChartSection, listed};
+use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
+use crate::error::Result;
+use crate::report::ReportTable;
+use crate::runner::{Case, Runner, Threads};
+use crate::solver::SolutionSearch;
+
+const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
+/// Δt, s.
+const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
+const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.9];
+/// A distance is drawn no lower, √(g d).
+const LEAST_DISTANCE: f64 = 1e-6;
+/// Curves of Bonds stand so far aside, as a factor of the number of grains.
+const ASIDE: f64 = 1.12;
+
+/// Piles of one size and kind.
+struct SolutionPlan {
+    name: String,
+    friction: f64,
+    plan: CollectionPlan,
+}
+
+/// What was found of a step.
+struct SearchedStep {
+    friction: f64,
+    grains: usize,
+    in_a_box: bool,
+    bond: f64,
+    time_step_secs: f64,
+    found: References,
+}
+
+fn plans(quick: bool) -> Vec<SolutionPlan> {
+    let sizes: &[(usize, &[f64])] = match quick {
+        true => &[(138, &[0.1])],
+        false => &[(138, &[0.05, 0.1, 0.2]), (500, &[0.05, 0.1, 0.2]), (2_000, &[0.1])],
+    };
+    let mut plans = Vec::new();
+    for &(grains, times_secs) in sizes {
+        for in_a_box in [false, true] {
+            for friction in FRICTIONS {
+                let times_secs = if in_a_box { &[0.02] } else { times_secs };
+                let plan = CollectionPlan {
+                    bonds: BONDS.to_vec(),
+                    time_steps_secs: TIME_STEPS_SECS.to_vec(),
+                    times_secs: times_secs.to_vec(),
+                    friction: Some(friction),
+                    ..CollectionPlan::of_size(grains, in_a_box, quick)
+                };
+                let state = if in_a_box { "at rest" } else { "moving" };
+                let name = format!("{grains} grains, {state}, μ {friction}");
+                plans.push(SolutionPlan { name, friction, plan });
+            }
+        }
+    }
+    plans
+}
+
+/// How they are looked for.
+fn search(quick: bool) -> SolutionSearch {
+    let max_sweeps = if quick { 5_000 } else { 20_000 };
+    SolutionSearch { starts: 4, seed: 1, max_sweeps, tolerance: 1e-10 }
+}
+
+/// Searches all steps, some at a time, and draws how far apart the solutions are.
+pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
+    let search = search(bench.options.quick);
+    let mut all = Vec::new();
+    let (columns, mut rows) =
+        ("piles steps with_several median_distance largest_distance", Vec::new());
+    for SolutionPlan { name, friction, plan } in plans(bench.options.quick) {
+        let found = searched(bench, &plan, search)?;
+        let several = found.iter().filter(|it| it.found > 1);
+        let mut distances: Vec<f64> = several.map(|it| it.spread).collect();
+        distances.sort_by(f64::total_cmp);
+        let told = |at: Option<&f64>| at.map_or(String::new(), |it| format!("{it:.1e}"));
+        rows.push(vec![
+            name,
+            found.len().to_string(),
+            distances.len().to_string(),
+            told(distances.get(distances.len() / 2)),
+            told(distances.last()),
+        ]);
+        let CollectionPlan { grains, in_a_box, .. } = plan;
+        let mut found = found.into_iter();
+        for bond in BONDS {
+            for time_step_secs in TIME_STEPS_SECS {
+                let of_pile = found.by_ref().take(plan.times_secs.len());
+                all.extend(of_pile.map(|found| SearchedStep {
+                    friction,
+                    grains,
+                    in_a_box,
+                    bond,
+                    time_step_secs,
+                    found,
+                }));
+            }
+        }
+    }
+    let columns = columns.split(' ').collect();
+    let summary = ReportTable { name: "chart-solutions-piles".into(), columns, rows };
+    let words = format!(
+        "{} starts a step: the impulses of the step before, none, and random ones that the law allows, each solved with up to {} \
+         sweeps of conjugate gradients and then by Newton's method to a residual of {:e}. Two results are two solutions \
+         if they are farther apart than both are estimated to be from theirs. Distances are root mean squares of velocities, \
+         √(g d).",
+        search.starts, search.max_sweeps, search.tolerance
+    );
+    let (name, others) = ("chart-solutions".to_owned(), vec![steps(&all)]);
+    Ok(vec![ChartSection { name, sheet: sheet(bench, &all), words, summary, others }])
+}
+
+fn searched(
+    bench: &Bench,
+    plan: &CollectionPlan,
+    search: SolutionSearch,
+) -> Result<Vec<References>> {
+    let runner: Runner<References> = bench.runner("solutions")?;
+    let names = plan.names();
+    let case = |(setup, key): (usize, &String)| Case { key: key.clone(), cost: 1.0, setup };
+    let cases: Vec<Case<usize>> = names.iter().enumerate().map(case).collect();
+    let is_finished = cases.iter().all(|case| runner.has(&case.key));
+    let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
+    let results = runner
+        .run(&cases, Threads::All, |&step| Ok(steps[step].next_problem(ReferenceSearch(search))))?;
+    Ok(results.into_iter().map(|case| case.result).collect())
+}
+
+fn sheet(bench: &Bench, all: &[SearchedStep]) -> Sheet {
+    let mut charts = Vec::new();
+    for (in_a_box, state) in [(false, "moving"), (true, "at rest in a box")] {
+        let mut chart = Chart::new(
+            format!("Piles {state}"),
+            Axis::log("grains", 80.0, 4_000.0),
+            Axis::log("farthest solutions of a step, √(g d)", 0.5 * LEAST_DISTANCE, 0.3),
+        );
+        for (number, bond) in BONDS.into_iter().enumerate() {
+            let its = all.iter().filter(|it| it.bond == bond && it.in_a_box == in_a_box);
+            let aside = ASIDE.powf(number as f64 - 1.0);
+            let place = |it: &SearchedStep| {
+                let distance = if it.found.found > 1 { it.found.spread } else { 0.0 };
+                (it.grains as f64 * aside, distance.max(LEAST_DISTANCE))
+            };
+            let name = format!("Bond {bond}");
+            let look = Look::Rings(4);
+            chart.layers.push(Layer::curve(name, points(its.map(place)), PALETTE[number], look));
+        }
+        charts.push(chart);
+    }
+    let caption = bench.caption(&[
+        &format!(
+            "A ring a step, at the largest distance of two of its solutions; those of one solution at the lower edge. μ = {}; Δt = {} s.",
+            listed(FRICTIONS, |it| it.to_string()),
+            listed(TIME_STEPS_SECS, |it| format!("{it:e}"))
+        ),
+    ]);
+    Sheet { size: (1200, 600), charts, caption }
+}
+
+fn steps(all: &[SearchedStep]) -> ReportTable {
+    let columns =
+        "grains state bond friction time_step solutions distance estimated_error residual";
+    let row = |it: &SearchedStep| {
+        let References { found, spread, told, residual, .. } = &it.found;
+        vec![
+            it.grains.to_string(),
+            if it.in_a_box { "at rest" } else { "moving" }.to_owned(),
+            it.bond.to_string(),
+            it.friction.to_string(),
+            format!("{:e}", it.time_step_secs),
+            found.to_string(),
+            format!("{spread:e}"),
+            format!("{told:e}"),
+            format!("{residual:e}"),
+        ]
+    };
+    let name = "chart-solutions-steps".to_owned();
+    ReportTable { name, columns: columns.split(' ').collect(), rows: all.iter().map(row).collect() }
+}

@@ -1,0 +1,106 @@
+//! The touch tolerance: a contact pulls up to that gap, and grains push each other at gap 0 alone, within rounding.
+
+use crate::common::*;
+
+const RADIUS: f64 = 0.01;
+const DIAMETER: f64 = 2.0 * RADIUS;
+const BOND: f64 = 20.0;
+/// The gap that is rounding, in diameters.
+const ROUNDING: f64 = 1e-4;
+
+/// Two weightless discs with a gap, in diameters, whose distance grows with a speed.
+fn pair(tolerance: f64, gap: f64, opening: f64, dt: f64, restitution: f64) -> Scene {
+    let place = (RADIUS + 0.5 * gap * DIAMETER) * DVec2::X;
+    let grains = [-1.0, 1.0]
+        .map(|side| weightless(moving(side * place, RADIUS, 0.5 * side * opening * DVec2::X)));
+    let numbers =
+        Parameters { touch_tolerance: tolerance, ..parameters(BOND, dt, restitution, 0.5) };
+    Scene { solver: SolverSettings::default(), ..under_g(numbers, grains.to_vec()) }
+}
+
+fn gap(run: &Simulation) -> f64 {
+    run.place(0).distance(run.place(1)) / DIAMETER - 1.0
+}
+
+fn opening(run: &Simulation) -> f64 {
+    let velocities = &run.world().grains.velocities;
+    (velocities[1] - velocities[0]).x
+}
+
+#[test]
+fn discs_that_come_from_within_the_tolerance_meet_at_gap_0() {
+    for (dt, speed) in pairs([1e-3, 1e-4], [0.0, -1e-3, -0.1]) {
+        let run = after(&pair(0.01, 0.005, speed, dt, 0.0), (0.1 / dt) as usize);
+        assert!(gap(&run).abs() <= ROUNDING, "{dt} s, {speed} m/s: {} d", gap(&run));
+        // Without cohesion nothing brings slow ones there.
+        let mut loose = pair(0.01, 0.005, speed, dt, 0.0);
+        loose.parameters.bond = 0.0;
+        let run = after(&loose, (0.1 / dt) as usize);
+        let expected = (0.005 + 0.1 * speed / DIAMETER).max(0.0);
+        assert!((gap(&run) - expected).abs() <= ROUNDING, "{dt} s, {speed} m/s: {} d", gap(&run));
+    }
+}
+
+#[test]
+fn discs_bounce_from_within_the_tolerance_as_from_the_surface() {
+    for restitution in [0.3, 1.0] {
+        let mut fast = pair(0.01, 0.005, -1.0, 1e-3, restitution);
+        fast.parameters.bond = 0.0;
+        let run = after(&fast, 10);
+        assert_close(opening(&run), restitution, 1e-9, "speed");
+    }
+}
+
+/// ½ m_ij v² = C₀ (τ + what the pair opens within a step), and C₀ = Bond m_ij g.
+#[test]
+fn a_bond_takes_its_force_times_the_tolerance_to_break() {
+    for tolerance in [1e-3, 0.01, 0.1] {
+        let escape = (2.0 * BOND * G * tolerance * DIAMETER).sqrt();
+        for (part, whole) in [(0.97, true), (1.03, false)] {
+            // In steps within which it opens little.
+            let dt = 1e-3 * tolerance * DIAMETER / escape;
+            let run = after(&pair(tolerance, 0.0, part * escape, dt, 0.0), 5_000);
+            let stays = gap(&run) < tolerance;
+            assert_eq!(stays, whole, "{tolerance} d, {part} of the escape speed");
+        }
+    }
+    // In a long step one cohesion's push decides, whatever the tolerance is.
+    let (dt, capture) = (1e-3, BOND * G * 1e-3);
+    for (part, whole) in [(0.99, true), (1.01, false)] {
+        let run = after(&pair(0.0, -1e-6, part * capture, dt, 0.0), 50);
+        assert_eq!(gap(&run) < 0.0, whole, "{part} of the capture speed");
+    }
+}
+
+/// A pair opens by ½ω²Δt²d in a step. Where the bond has hardly more strength than the circle takes, the pull needs some steps to
+/// turn that round, in which the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), with the spin ω_b that the bond bears.
+#[test]
+fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
+    let break_up = (BOND * G / DIAMETER).sqrt();
+    for (dt, tolerance) in [(1e-4, 1e-4), (1e-4, 1e-2), (1e-3, 2e-2)] {
+        for part in [0.02, 0.5, 0.85, 0.97, 1.03] {
+            let rate: f64 = part * break_up;
+            let left = break_up.powi(2) - rate.powi(2);
+            let grows = 0.5 * (rate * dt).powi(2) + (rate.powi(2) * dt).powi(2) / (8.0 * left);
+            let whole = left > 0.0;
+            if whole && grows > tolerance {
+                continue;
+            }
+            let mut scene = pair(tolerance, -1e-3, 0.0, dt, 0.0);
+            for (grain, side) in scene.grains.iter_mut().zip([-1.0, 1.0]) {
+                grain.velocity = RADIUS * rate * side * DVec2::Y;
+                grain.angular_velocity = rate;
+            }
+            let turns = 20.0;
+            let steps = (turns * std::f64::consts::TAU / (rate * dt)) as usize;
+            let run = after(&scene, steps.min(50_000));
+            assert_eq!(gap(&run) < 0.05, whole, "{dt} s, {tolerance} d, {part}: {} d", gap(&run));
+            let held = run.alarms().iter().all(|alarm| alarm.kind != AlarmKind::TurnedBonds);
+            assert!(held, "{dt} s, {tolerance} d, {part}");
+            if part > 0.1 {
+                scene.parameters.touch_tolerance = 0.0;
+                assert!(gap(&after(&scene, steps.min(50_000))) > 0.05, "without it, it parts");
+            }
+        }
+    }
+}
