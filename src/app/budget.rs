@@ -38,7 +38,7 @@ pub(super) const FAST: Budget = Budget {
 pub(super) const PAPER: Budget = Budget {
     name: "Paper",
     hint: "The paper's scheme: Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are \
-           computed, the same to the last digit. Some steps stay unsolved.",
+           computed, at a touch tolerance of 0 the same to the last digit. Some steps stay unsolved.",
     settings: SolverSettings::PAPER,
 };
 

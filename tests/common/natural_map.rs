@@ -14,7 +14,13 @@ pub struct Judged {
     pub before: [f64; 2],
     pub after: [f64; 2],
     pub free: [f64; 2],
+    /// What the law adds to v_n at the end, m/s: ρ times that at the beginning, or what lets grains close a gap that is within
+    /// the touch tolerance.
+    pub rebound: f64,
 }
+
+/// Gaps within which grains touch, in mean diameters, and part of the touch tolerance.
+const ROUNDING: f64 = 1e-4;
 
 /// Velocities and spins of the grains, for [`judge`].
 type Velocities = (Vec<DVec2>, Vec<f64>);
@@ -44,7 +50,9 @@ fn wall_velocity(simulation: &Simulation, other: u32) -> (DVec2, f64) {
 pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     let world = simulation.world();
     let grains = &world.grains;
-    let dt = simulation.parameters().time_step_secs;
+    let Parameters { time_step_secs: dt, restitution, touch_tolerance, .. } =
+        *simulation.parameters();
+    let touching = (0.5 * touch_tolerance).min(ROUNDING) * world.mean_diameter;
     let turning = simulation.physics().rotation;
     let motion = |grains: &Grains| (grains.velocities.clone(), grains.angular_velocities.clone());
     let (start, end) = (motion(before), motion(grains));
@@ -70,15 +78,20 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
             [contact.normal.dot(velocity), tangent.dot(velocity) - rim - surface]
         };
         let normal_mass = 1.0 / normal_mobility;
+        let (before, gap) = (relative(&start), contact.gap);
+        let bounce = restitution * before[0];
+        let comes_there = bounce < 0.0 && gap + dt * before[0] < 0.0;
+        let rebound = if gap <= touching || comes_there { bounce } else { gap / dt };
         let spin_mobility = if turning { spin_mobility } else { 0.0 };
         let cohesion_force = simulation.parameters().bond * normal_mass * world.gravity.magnitude();
         Judged {
             normal_mass,
             tangential_mass: 1.0 / (normal_mobility + spin_mobility),
             cohesion_impulse: dt * cohesion_force,
-            before: relative(&start),
+            before,
             after: relative(&end),
             free: relative(&free),
+            rebound,
         }
     })
     .collect()
@@ -86,12 +99,12 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
 
 /// The residual's ‖error‖ and ‖scale‖ (N·s), and how far impulses are outside their cones (N·s).
 pub fn natural_map(simulation: &Simulation, before: &Grains) -> (f64, f64, f64) {
-    let Parameters { friction, restitution, cone, .. } = *simulation.parameters();
+    let Parameters { friction, cone, .. } = *simulation.parameters();
     let (mut error, mut scale, mut outside) = (0.0, 0.0, 0f64);
     let judged = judge(simulation, before);
     for (contact, impulse) in judged.iter().zip(simulation.contacts().impulses()) {
         let p = impulse.normal + contact.cohesion_impulse;
-        let formal = |velocity: f64| velocity + restitution * contact.before[0];
+        let formal = |velocity: f64| velocity + contact.rebound;
         let bound = friction
             * match cone {
                 FrictionCone::Shifted => p.max(0.0),

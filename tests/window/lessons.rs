@@ -46,8 +46,8 @@ const CLAIMS: [Claim; 6] = [
     Claim { lesson: "The time step glues", worlds: [0, 1], between: [0.1, 0.3] },
     Claim { lesson: "The solver's part", worlds: [0, 2], between: [0.1, 0.4] },
     Claim { lesson: "The solver's part", worlds: [1, 2], between: [0.0, 0.2] },
-    Claim { lesson: "A law in which Δt means little", worlds: [0, 1], between: [0.1, 0.3] },
-    Claim { lesson: "A law in which Δt means little", worlds: [2, 3], between: [-0.03, 0.03] },
+    Claim { lesson: "A law in which Δt means little", worlds: [0, 1], between: [0.05, 0.2] },
+    Claim { lesson: "A law in which Δt means little", worlds: [2, 3], between: [-0.04, 0.04] },
     Claim { lesson: "What friction hangs on", worlds: [1, 0], between: [0.2, 0.4] },
 ];
 
@@ -81,6 +81,7 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
         "A law in which Δt means little",
         "What friction hangs on",
     ];
+    let mut odd = Vec::new();
     for title in titles {
         let lesson = lesson(title).1;
         let shown = slumps(lesson, None);
@@ -102,11 +103,14 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
         for (world, &shown) in shown.iter().enumerate() {
             let below = all.iter().filter(|slumps| slumps[world] < shown).count();
             println!("{title}, world {world}: {below} of {} slump less than {shown:.3}", all.len());
-            let odd = below < all.len() / 4 || below > all.len() - all.len() / 4;
-            // One world of eight may be odd by chance and is: 40 sweeps.
-            assert!(!odd || title == "The solver's part", "{title}: world {world} is an odd one");
+            assert!((1..all.len()).contains(&below), "{title}: world {world} is outside of all");
+            if below < all.len() / 4 || below > all.len() - all.len() / 4 {
+                odd.push((title, world));
+            }
         }
     }
+    // A single one by chance: 5 ms at Bond 8.
+    assert!(odd.len() <= 1, "outside of the middle half: {odd:?}");
 }
 
 #[test]

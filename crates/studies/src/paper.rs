@@ -3,8 +3,7 @@
 use glam::DVec2;
 
 use crate::error::Result;
-use crate::scene::{NewPile, Scene, cradle, paper_pile};
-use crate::solver::SolverSettings;
+use crate::scene::{NewPile, Preset, Scene, cradle, paper_pile};
 use crate::world::Boundary;
 
 /// One run of a figure, with the times that it is shown at.
@@ -36,7 +35,7 @@ pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
 pub fn paper_runs() -> Result<Vec<PaperRun>> {
     let mut runs = Vec::new();
     let mut pile = paper_pile()?;
-    pile.solver = SolverSettings::PAPER;
+    Preset::Paper.apply(&mut pile);
     for time_step_secs in FIG4_TIME_STEPS_SECS {
         for bond in FIG4_BONDS {
             let mut scene = pile.clone();

@@ -64,7 +64,8 @@ const LINE_UPS: [LineUp; 7] = [
         name: "Paper Fig. 4",
         hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s, each step solved as for the figure.",
         worlds: |base| {
-            let base = Settings { solver: PAPER.settings, ..stepped(base, Stepper::Moreau) };
+            let mut base = Settings { solver: PAPER.settings, ..stepped(base, Stepper::Moreau) };
+            base.parameters.touch_tolerance = 0.0;
             let of_bond = |bond| FIG4_TIME_STEPS_SECS.map(|secs| base.with_bond(bond).over(secs));
             FIG4_BONDS.into_iter().flat_map(of_bond).collect()
         },

@@ -104,10 +104,11 @@ fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {
     let down = if physics.axes == 1 { DVec2::X } else { -DVec2::Y };
     let place = |k: usize| k as f64 * (2.0 * RADIUS - OVERLAP) * down;
     let grains = (1..=n).map(|k| Grain::at_rest(place(k), RADIUS)).collect();
+    let numbers = Parameters { touch_tolerance: 0.0, ..parameters(bond, dt, 0.2, 0.5) };
     start(&Scene {
         fixed_discs: vec![fixed(DVec2::ZERO, RADIUS)],
         solver: to_residual(1e-11),
-        ..scene(physics, G * down, parameters(bond, dt, 0.2, 0.5), grains)
+        ..scene(physics, G * down, numbers, grains)
     })
 }
 

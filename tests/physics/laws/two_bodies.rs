@@ -132,7 +132,8 @@ const TIME_STEPS: [f64; 7] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 5e-3];
 /// Gravity pulls i off another body. The pull is m_ij g, C₀ is Bond·m_ij·g: the threshold is
 /// Bond = 1.
 fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
-    let case = Case { parameters: parameters(bond, dt, 0.2, 0.5), velocity: 0.0, pressing: -1.0 };
+    let parameters = Parameters { touch_tolerance: 0.0, ..parameters(bond, dt, 0.2, 0.5) };
+    let case = Case { parameters, velocity: 0.0, pressing: -1.0 };
     let direction = if physics.axes == 1 { DVec2::X } else { -DVec2::Y };
     let mut scene = against_fixed(&case, physics, direction);
     if free {

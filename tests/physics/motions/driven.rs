@@ -38,6 +38,7 @@ pub(super) fn pressed(mass: f64) -> Scene {
     scene.boundaries = between(0.06);
     // What touches at the start touches in the first step.
     scene.gap_tolerance = 1e-8;
+    scene.parameters.touch_tolerance = 0.0;
     scene.periodic = Some(Periodic::along_x([-0.025, 0.225]));
     let pressure = Drive { force: None, pressure: Some(40.0), ..by_force(DVec2::NEG_Y, 0.0, mass) };
     scene.motions = vec![driven(&[1], pressure)];

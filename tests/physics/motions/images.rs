@@ -70,6 +70,7 @@ fn every_pair_in_touch_is_found_across_borders_and_none_twice() {
         ("sheared", sheared, 1500),
     ] {
         let (mut run, mut across) = (start(&scene), [0; 2]);
+        let tolerance = scene.parameters.touch_tolerance * scene.mean_diameter;
         for _ in 0..steps {
             let (grains, cell) = (run.grains().clone(), run.world().periodic.expect("a cell"));
             take_steps(&mut run, 1);
@@ -84,7 +85,7 @@ fn every_pair_in_touch_is_found_across_borders_and_none_twice() {
             for i in 0..grains.len() {
                 for j in i + 1..grains.len() {
                     let apart = grains.positions[i] - grains.positions[j];
-                    let reach = grains.radii[i] + grains.radii[j];
+                    let reach = grains.radii[i] + grains.radii[j] + tolerance;
                     for (above, beside) in
                         rows.clone().flat_map(|above| (-2..=2).map(move |beside| (above, beside)))
                     {

@@ -147,7 +147,7 @@ fn momentum_less_that_of_the_shear_stays() {
             (0..grains.len()).map(|k| grains.masses[k] * own(k)).sum()
         };
         let (before, mut crossings) = (momentum(&run), 0);
-        for _ in 0..500 {
+        for _ in 0..1000 {
             let old = run.grains().positions.clone();
             take_steps(&mut run, 1);
             let now = run.places();

@@ -78,14 +78,13 @@ fn solvers() -> Vec<SolverSettings> {
 
 /// The bound on the velocities' error under Coulomb's law and what it is held against, m/s.
 fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
-    let restitution = run.parameters().restitution;
     let friction = if run.physics().friction { run.parameters().friction } else { 0.0 };
     let world = run.world();
     let (mut gap, mut undone) = (0.0, 0.0);
     let mut touches = vec![false; before.len()];
     let contacts = run.contacts().contacts().iter().zip(run.contacts().impulses());
     for (judged, (contact, impulse)) in judge(run, before).iter().zip(contacts) {
-        let rebound = restitution * judged.before[0];
+        let rebound = judged.rebound;
         let p = impulse.normal + judged.cohesion_impulse;
         let rubs = if run.parameters().cone == FrictionCone::Shifted { p } else { impulse.normal };
         let opening = judged.after[0] + rebound;

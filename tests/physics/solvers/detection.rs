@@ -162,12 +162,13 @@ fn a_running_simulation_sees_every_contact_of_fast_grains() {
     };
     scene.mean_diameter = 0.9;
     scene.solver.max_sweeps = 20;
+    let tolerance = scene.parameters.touch_tolerance * scene.mean_diameter;
     let mut run = start(&scene);
     let mut contacts = 0;
     for step in 0..400 {
         let before = run.world().clone();
         run.step().expect("a finite state");
-        let expected = every_pair(&before, 0.0);
+        let expected = every_pair(&before, tolerance);
         assert_eq!(found(run.contacts()), expected, "step {step}");
         contacts += expected.len();
     }

@@ -2,7 +2,7 @@
 //! what theory says of the borders is what is measured.
 //!
 //! After a change that makes a verdict better, or worse for a good reason, renew the table:
-//! `cargo run --release -- stability --quick --table tests/physics/stability/table.csv`.
+//! `cargo run --release -- stability --quick --table tests/physics/stability/table.csv --overwrite`.
 
 mod advice;
 mod theory;
@@ -17,8 +17,7 @@ use slump::study::stability::{CHALLENGES, StabilityTable, StabilityVerdict};
 
 use crate::common::*;
 
-const RENEW: &str =
-    "cargo run --release -- stability --quick --table tests/physics/stability/table.csv";
+const RENEW: &str = "cargo run --release -- stability --quick --table tests/physics/stability/table.csv --overwrite";
 
 /// Challenges that no contender fails: what was feared of them does not happen here.
 const UNBROKEN: [&str; 1] = ["rest"];

@@ -117,7 +117,8 @@ fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
 pub fn collision() -> Scene {
     let radius = 0.5 * LINE_DIAMETER;
     let gravity = Gravity::Uniform { acceleration: DVec2::new(-2.0, 0.0) };
-    let parameters = Parameters { bond: 3.0, restitution: 0.5, ..Parameters::default() };
+    let parameters =
+        Parameters { bond: 3.0, restitution: 0.5, touch_tolerance: 0.0, ..Parameters::default() };
     let grain = Grain::at_rest(DVec2::new(2.0 * LINE_DIAMETER, 0.0), radius);
     Scene {
         duration_secs: 1.5,
@@ -152,7 +153,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
     let k = disc(-start_in_diameters, 80);
     let gravity = Gravity::Attraction { centre: DVec2::ZERO, magnitude: 2.0 };
     let parameters =
-        Parameters { bond: 3.0, time_step_secs: 5e-4, restitution: 0.2, ..Parameters::default() };
+        Parameters { time_step_secs: 5e-4, restitution: 0.2, ..collision().parameters };
     Scene {
         gap_tolerance: 1e-9,
         duration_secs: 2.5,

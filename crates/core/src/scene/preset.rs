@@ -35,12 +35,14 @@ impl Preset {
     /// Changes what can be changed during a run.
     pub fn apply_to_settings(self, settings: &mut Settings) {
         match self {
-            // A scene that says how it is solved shows a scheme of its own.
-            Self::Paper if settings.solver == SolverSettings::default() => {
-                settings.solver = SolverSettings::PAPER;
-                *settings = settings.with_only_what_is_taken();
+            Self::Paper => {
+                settings.parameters.touch_tolerance = 0.0;
+                // A scene that says how it is solved shows a scheme of its own.
+                if settings.solver == SolverSettings::default() {
+                    settings.solver = SolverSettings::PAPER;
+                    *settings = settings.with_only_what_is_taken();
+                }
             }
-            Self::Paper => {}
             Self::Robust => make_robust(settings),
         }
     }

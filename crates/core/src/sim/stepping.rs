@@ -129,6 +129,8 @@ impl<'a, M: Model> Stage<'a, M> {
         let in_touch = InTouch::Within(range);
         let ahead = LookAhead { time_step_secs, distance: range, reach: range, in_touch };
         self.prepare_ahead(settings, |_| Some(ahead), rebound);
+        // Each contact has the capture speed of the law.
+        self.problem.rows.captures.clear();
     }
 
     /// The same with the contacts that the step may come to as well, as far as `look_ahead` says of a step

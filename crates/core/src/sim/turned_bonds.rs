@@ -14,16 +14,16 @@
 //! Without cohesion nothing pulls, and nothing counts.
 
 use crate::contact::Contact;
+use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::moreau::touch_tolerance;
 use crate::sim::stepping::Stage;
 use crate::solver::{Model, for_each_row};
-use crate::world::Parameters;
 
 /// Counts the bonds that ended so in a solved step, once the grains have moved.
-pub(super) fn count<M: Model>(stage: &Stage<'_, M>, parameters: &Parameters) -> u64 {
+pub(super) fn count<M: Model>(stage: &Stage<'_, M>, settings: &Settings) -> u64 {
     let Stage { state, problem, .. } = stage;
-    let tolerance = touch_tolerance(state, parameters).max(state.candidates.gap_tolerance());
+    let tolerance = touch_tolerance(state, settings).max(state.candidates.gap_tolerance());
     if problem.law.capture_speed() == 0.0 {
         return 0;
     }
@@ -33,7 +33,7 @@ pub(super) fn count<M: Model>(stage: &Stage<'_, M>, parameters: &Parameters) -> 
         if is_within_bounds(impulse, problem.capture(number)) {
             let contact = state.contacts.contacts()[problem.rows.contacts[number] as usize];
             let opening = motion.now[0] - problem.wall_speed(number);
-            let expected = contact.gap + parameters.time_step_secs * opening;
+            let expected = contact.gap + settings.parameters.time_step_secs * opening;
             ended += u64::from(is_open_against(state, &contact, expected, tolerance, M::AXES));
         }
     });

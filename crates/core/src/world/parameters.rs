@@ -17,6 +17,10 @@ words! {
 /// δ_c where none is given, in mean diameters.
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
+/// The touch tolerance where none is given, in mean diameters: the least with which discs that are written as touching do, and
+/// a pyramid of logs in equilibrium stands.
+const TOUCH_TOLERANCE: f64 = 1e-5;
+
 /// More substeps than this are a mistake: a single step of a pile would take many seconds.
 pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 
@@ -126,8 +130,8 @@ settings! {
             }),
         }
         /// In mean diameters. Within the largest no third grain fits between two bonded ones.
-        #[serde(default, skip_serializing_if = "is_zero")]
-        touch_tolerance: f64 = 0.0, "touch-tolerance" ("D"),
+        #[serde(default = "default_touch_tolerance")]
+        touch_tolerance: f64 = TOUCH_TOLERANCE, "touch-tolerance" ("D"),
             "Gap up to which grains touch, and pull if they cohere, in mean diameters; they push each other \
              at gap 0 alone. 0 in the paper's scheme", {
             allowed: "between 0 and 0.1 diameters",
@@ -203,6 +207,10 @@ settings! {
             }),
         }
     }
+}
+
+fn default_touch_tolerance() -> f64 {
+    TOUCH_TOLERANCE
 }
 
 fn default_debonding_distance() -> f64 {

@@ -42,7 +42,7 @@ pub struct BodyForm {
     pub pair: Vec<(u32, Option<u32>)>,
     /// n of each contact, from j to i.
     pub normal: Vec<[f64; 2]>,
-    /// Restitution's term in q of each contact, m/s.
+    /// Term of each contact in q, m/s: that of restitution, or gap/Δt where a gap within the touch tolerance may close.
     pub restitution_velocity: Vec<f64>,
     /// How fast the surface of the fixed body of each contact goes along t, n turned by +90°, m/s; 0 between two
     /// bodies, and left out where none moves.

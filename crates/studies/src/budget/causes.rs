@@ -89,7 +89,7 @@ pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
 /// How much better than by default steps are solved, to see what they leave unsolved: some steps cannot be solved to 1e-7 √(g d)
 /// because of rounding.
 const TIGHTER: f64 = 1e-2;
-/// Other than no touch tolerance, in mean diameters: more than what a step leaves unsolved, less than grains are rough.
+/// Another touch tolerance, in mean diameters: more than what a step leaves unsolved, less than grains are rough.
 const TOUCH_TOLERANCE: f64 = 1e-3;
 /// Below about this many g·Δt restitution stands for no bounce that anyone could see.
 const THRESHOLD: f64 = 2.0;
@@ -141,7 +141,8 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     }
     if coheres && base.stepper.reads("touch-tolerance") {
         let mut settings = base;
-        let tolerance = if base.parameters.touch_tolerance > 0.0 { 0.0 } else { TOUCH_TOLERANCE };
+        let tolerance =
+            if base.parameters.touch_tolerance >= TOUCH_TOLERANCE { 0.0 } else { TOUCH_TOLERANCE };
         settings.parameters.touch_tolerance = tolerance;
         let label = format!("touch tolerance {} d", short(tolerance));
         add(Cause::TouchTolerance, label, settings, 1.0);

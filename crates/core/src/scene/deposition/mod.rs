@@ -195,7 +195,12 @@ fn in_a_box(
     let pile = pile_of(grains, box_width_in_diameters)?;
     Ok(Scene {
         boundaries: walls(box_width_in_diameters),
-        parameters: Parameters { bond: 0.0, time_step_secs, ..pile.parameters },
+        parameters: Parameters {
+            bond: 0.0,
+            time_step_secs,
+            touch_tolerance: 0.0,
+            ..pile.parameters
+        },
         solver,
         ..pile
     })

@@ -5,11 +5,10 @@ use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::StepperInfo;
+use crate::sim::steppers::{Stepper, StepperInfo};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds;
 use crate::solver::{Approach, Model};
-use crate::world::Parameters;
 
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with cohesion and Coulomb's law",
@@ -26,7 +25,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let mut result = stage.move_by(report, settings);
     stage.state.contacts.sum_up();
     remedies::after_step(stage, settings);
-    result.turned_bonds = turned_bonds::count(stage, &settings.parameters);
+    result.turned_bonds = turned_bonds::count(stage, settings);
     result
 }
 
@@ -36,7 +35,7 @@ pub(in crate::sim) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Sett
     let world = stage.world();
     let gravity_magnitude = world.gravity.magnitude();
     let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
-    let tolerance = touch_tolerance(stage.state, &parameters);
+    let tolerance = touch_tolerance(stage.state, settings);
     let touching = touching_within(stage.state, tolerance);
     let rebound = |Approach { velocity, gap, in_touch }| {
         if !in_touch {
@@ -70,7 +69,7 @@ fn touching_within(state: &State, tolerance: f64) -> f64 {
     rounding.max(state.candidates.gap_tolerance())
 }
 
-/// The gap up to which contacts pull, m; 0 if that is no more than where they touch.
+/// The gap up to which contacts pull, m; 0 if that is no more than where they touch, and in a step that another stepper takes.
 ///
 /// Within it a contact has the law of one that touches, but its grains may come to each other as far as the gap lets
 /// them:
@@ -81,7 +80,8 @@ fn touching_within(state: &State, tolerance: f64) -> f64 {
 /// that room a pyramid of logs falls. So a contact pulls by C₀ until its gap is closed, and a bond takes the work
 /// C₀ (τ + what the pair opens within a step) to break. A pair that turns opens by ½ω²Δt²·L a step ([`turned_bonds`]):
 /// below the tolerance the next step closes that.
-pub(in crate::sim) fn touch_tolerance(state: &State, parameters: &Parameters) -> f64 {
-    let tolerance = parameters.touch_tolerance * state.world.mean_diameter;
-    if tolerance > state.candidates.gap_tolerance() { tolerance } else { 0.0 }
+pub(in crate::sim) fn touch_tolerance(state: &State, settings: &Settings) -> f64 {
+    let tolerance = settings.parameters.touch_tolerance * state.world.mean_diameter;
+    let is_read = settings.stepper == Stepper::Moreau;
+    if is_read && tolerance > state.candidates.gap_tolerance() { tolerance } else { 0.0 }
 }

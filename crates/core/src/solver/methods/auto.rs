@@ -31,7 +31,7 @@ const MOST_PATIENCE: usize = 100;
 
 /// A problem of that many contacts flows if more than this share of the contacts between grains slide faster than this, in
 /// √(g d), when its step begins. Of 2,000 standing grains none do, of 2,000 falling ones .08 to .3 after the first steps.
-const CONTACTS_THAT_FLOW: usize = 1_000;
+const CONTACTS_THAT_FLOW: usize = 500;
 const SLIDING_SHARE: f64 = 0.05;
 const SLIDING_SPEED: f64 = 0.02;
 
