@@ -107,9 +107,10 @@ fn check_budget(run: &mut Simulation, count: usize) {
 
 #[test]
 fn every_step_of_a_cohesive_pile_closes_its_energy_budget() {
-    for (bond, friction) in [(0.0, 0.5), (20.0, 0.5), (100.0, 0.3), (20.0, 0.0)] {
+    let kinds = [(0.0, 0.5), (20.0, 0.5), (100.0, 0.3), (20.0, 0.0)];
+    for ((bond, friction), touch_tolerance) in pairs(kinds, [0.0, 1e-5, 1e-2]) {
         let mut scene = paper_pile().expect("the shipped state");
-        scene.parameters = parameters(bond, 2e-3, 0.1, friction);
+        scene.parameters = Parameters { touch_tolerance, ..parameters(bond, 2e-3, 0.1, friction) };
         // The budget closes however badly a step is solved.
         scene.solver.max_sweeps = 50;
         check_budget(&mut start(&scene), 100);

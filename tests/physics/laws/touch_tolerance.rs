@@ -52,6 +52,35 @@ fn discs_bounce_from_within_the_tolerance_as_from_the_surface() {
     }
 }
 
+/// What the pull gives a pair that comes, it takes when the pair leaves: without restitution's loss nothing is lost, except by pairs
+/// that come to the surface so slowly that they end a step there.
+#[test]
+fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
+    let (mut kept, mut lost) = (0, 0);
+    for (tolerance, dt) in pairs([1e-3, 1e-2, 0.1], [1e-3, 1e-4]) {
+        let escape = (2.0 * BOND * G * tolerance * DIAMETER).sqrt();
+        for part in 1..60 {
+            let speed = 0.1 * f64::from(part) * escape;
+            let far = 1.5 * tolerance + 2.0 * speed * dt / DIAMETER;
+            let mut run = start(&pair(tolerance, far, -speed, dt, 1.0));
+            let (mut steps, mut met) = (0, false);
+            while steps < 100_000 && !(met && gap(&run) > far) {
+                take_steps(&mut run, 1);
+                steps += 1;
+                met |= opening(&run) > 0.0;
+                if met && opening(&run) <= 0.0 {
+                    break;
+                }
+            }
+            let left = opening(&run) / speed;
+            assert!(left < 1.0 + 1e-9, "{tolerance} d, {dt} s, {part}: {left}");
+            kept += u32::from(left > 1.0 - 1e-9);
+            lost += u32::from(left <= 0.0);
+        }
+    }
+    assert!(kept > 100 && lost > 0, "{kept} leave with all of their speed, {lost} are caught");
+}
+
 /// ½ m_ij v² = C₀ (τ + what the pair opens within a step), and C₀ = Bond m_ij g.
 #[test]
 fn a_bond_takes_its_force_times_the_tolerance_to_break() {
