@@ -54,12 +54,14 @@ struct Edges {
 }
 
 /// In which ways grains were lost since the last look.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct NewLosses {
     /// True if one went through a wall.
     pub through_wall: bool,
     /// True if one left the world.
     pub left: bool,
+    /// Largest speed of those that left, in own diameters per second.
+    pub diameters_per_second: f64,
     /// True if one was placed in a wall.
     pub placed: bool,
 }
@@ -132,7 +134,11 @@ impl Losses {
                     match fate {
                         _ if were_placed && features.iter().any(is_in) => new.placed = true,
                         Fate::Lost => new.through_wall = true,
-                        Fate::There | Fate::Inside => new.left = true,
+                        Fate::There | Fate::Inside => {
+                            let speed = world.grains.velocities[index].length() / (2.0 * radius);
+                            new.left = true;
+                            new.diameters_per_second = new.diameters_per_second.max(speed);
+                        }
                     }
                 }
             }
