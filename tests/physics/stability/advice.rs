@@ -187,22 +187,27 @@ fn grains_that_leave_an_open_hopper_have_not_gone_through_a_wall() {
 #[test]
 fn a_grain_that_jumps_over_fixed_discs_asks_for_a_smaller_time_step() {
     // It is 0.02 m above a row of fixed discs after three steps, and 0.02 m below it after four.
-    let fall = |dt: f64| {
-        let grains = vec![Grain::at_rest(at(0.05, 0.5), 0.05)];
+    let fall = |x: f64, dt: f64| {
+        let grains = vec![Grain::at_rest(at(x, 0.5), 0.05)];
         let row = (-5..=5).map(|k| fixed(at(0.1 * f64::from(k), 0.0), 0.05));
         let parameters = parameters(0.0, dt, 0.0, 0.5);
         start(&Scene { fixed_discs: row.collect(), ..under_g(parameters, grains) })
     };
-    let mut run = fall(0.08);
+    let mut run = fall(0.05, 0.08);
     take_steps(&mut run, 15);
     let alarm = run.alarms().iter().find(|alarm| alarm.kind == AlarmKind::GrainLeft);
     let alarm = alarm.expect("the grain goes through the row");
     assert_eq!(alarm.advice, Advice::TimeStep);
     let longest = alarm.longest_time_step_secs.expect("a time step");
     assert!((0.01..0.04).contains(&longest), "{longest} s");
-    let mut run = fall(0.5 * longest);
+    let mut run = fall(0.05, 0.5 * longest);
     take_steps(&mut run, 200);
     assert!(run.alarms().iter().all(|alarm| alarm.kind != AlarmKind::GrainLeft));
+    // Beside the row no time step holds it.
+    let mut run = fall(0.7, 0.08);
+    take_steps(&mut run, 15);
+    let alarm = run.alarms().iter().find(|alarm| alarm.kind == AlarmKind::GrainLeft);
+    assert_eq!(alarm.expect("it falls past the row").advice, Advice::Enclose);
 }
 
 #[test]

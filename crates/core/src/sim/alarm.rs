@@ -261,11 +261,9 @@ impl Watch {
             self.raise_on_depth(AlarmKind::GrainLost, sinks, state, settings, observables);
         }
         if new.left {
+            // So fast a grain can be above a fixed disc before a step and below it after.
             let longest = 1.0 / new.diameters_per_second;
-            // So fast a grain can be on one side of a fixed disc before a step and on the other after it.
-            let may_have_jumped =
-                observables.time_step_secs > longest && !state.world.fixed_discs.is_empty();
-            match may_have_jumped {
+            match observables.time_step_secs > longest {
                 true => self.raise(AlarmKind::GrainLeft, observables, Some(longest)),
                 false => self.raise_with(AlarmKind::GrainLeft, observables, Advice::Enclose),
             }

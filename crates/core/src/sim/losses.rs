@@ -12,7 +12,7 @@ use parry2d_f64::shape::Segment;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Feature;
-use crate::world::{Physics, World};
+use crate::world::{Disc, Physics, World};
 
 /// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
 const ROOM_IN_SIDES: f64 = 3.0;
@@ -60,7 +60,7 @@ pub(super) struct NewLosses {
     pub through_wall: bool,
     /// True if one left the world.
     pub left: bool,
-    /// Largest speed of those that left, in own diameters per second.
+    /// Largest speed of those that left below a fixed disc, in own diameters per second.
     pub diameters_per_second: f64,
     /// True if one was placed in a wall.
     pub placed: bool,
@@ -135,9 +135,12 @@ impl Losses {
                         _ if were_placed && features.iter().any(is_in) => new.placed = true,
                         Fate::Lost => new.through_wall = true,
                         Fate::There | Fate::Inside => {
-                            let speed = world.grains.velocities[index].length() / (2.0 * radius);
                             new.left = true;
-                            new.diameters_per_second = new.diameters_per_second.max(speed);
+                            if self.world.is_below_a_disc(world, to, radius) {
+                                let speed = world.grains.velocities[index].length();
+                                let rate = speed / (2.0 * radius);
+                                new.diameters_per_second = new.diameters_per_second.max(rate);
+                            }
                         }
                     }
                 }
@@ -237,6 +240,17 @@ impl Edges {
         let Self { corners, bottom } = self;
         corners.is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
             || bottom.is_some_and(|(down, lowest)| place.dot(down) > lowest + depth)
+    }
+
+    /// True of a grain of that radius (m) that has left straight below a fixed disc, and not beside all of them.
+    fn is_below_a_disc(&self, world: &World, place: DVec2, radius: f64) -> bool {
+        self.bottom.is_some_and(|(down, _)| {
+            let is_above = |disc: &Disc| {
+                let apart = place - disc.position;
+                apart.dot(down) > 0.0 && apart.perp_dot(down).abs() < disc.radius + radius
+            };
+            world.fixed_discs.iter().any(is_above)
+        })
     }
 }
 

@@ -58,6 +58,7 @@ const MOST_SWEEPS_BETWEEN: u32 = 200;
 /// before. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339 are left without elimination in 60 s, and 878, 961, 875, 893
 /// and 921 with it after 0, 4, 8, 16 and 32 in 136, 124, 121, 120 and 100 s.
 const FACTORISATIONS_FIRST: u32 = 8;
+
 /// How long Newton's method is tried, and how long conjugate gradients after it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewtonEffort {
