@@ -16,7 +16,7 @@ SCENES = ["pile", "cradle", "collision", "column", "mass-ratio", "chain", "canti
     "squeeze", "moving-walls", "logs", "arch", "repose", "repose-angle", "far", "bounce", "newtons-cradle",
     "thin-wall", "lift-off", "dilatancy", "blow", "hyperstatic", "assets/scenes/hourglass.toml"]
 METHODS = ["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
-REMEDIES = [[], ["--push-out", "true"], ["--max-travel", "0.1"], ["--calm-unsolved", "true"],
+REMEDIES = [[], ["--push-out", "true"], ["--max-travel", "0.1"],
     ["--sequential-impacts", "true"], ["--speculative", "true"], ["--preset", "robust"]]
 NUMBERS = [["--dt", "1e-3", "--duration", "0.03", "--times", "0.03"],
     ["--dt", "5e-3", "--duration", "0.1", "--times", "0.1", "--rho", "0.9"],

@@ -61,7 +61,6 @@ class _Settings(TypedDict):
     model_solves: int
     push_out: bool
     max_travel: float
-    calm_unsolved: bool
     sequential_impacts: bool
     speculative: bool
 
@@ -90,7 +89,6 @@ class _Changes(TypedDict, total=False):
     model_solves: _Int | None
     push_out: _Bool | None
     max_travel: _Float | None
-    calm_unsolved: _Bool | None
     sequential_impacts: _Bool | None
     speculative: _Bool | None
 
@@ -119,7 +117,6 @@ class _Attributes:
     model_solves: int
     push_out: bool
     max_travel: float
-    calm_unsolved: bool
     sequential_impacts: bool
     speculative: bool
 # Settings end.
@@ -258,7 +255,7 @@ def solutions(
 ) -> list[FoundSolution]: ...
 def solve(
     problem: _Path | Mapping[str, Any],
-    method: str = "nsgs",
+    method: str = "auto",
     tolerance: _Float = 1e-8,
     max_sweeps: _Int = 1_000_000,
     repeat: _Int = 1,

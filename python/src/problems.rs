@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Solves a contact problem: a dictionary, as of `Simulation.next_problem`, its JSON, or a file of it or of
 /// Siconos'. What Ctrl-C leaves undone goes on in the background.
 #[pyfunction]
-#[pyo3(signature = (problem, method="nsgs", tolerance=1e-8, max_sweeps=1_000_000, repeat=1, without_bodies=false))]
+#[pyo3(signature = (problem, method="auto", tolerance=1e-8, max_sweeps=1_000_000, repeat=1, without_bodies=false))]
 pub(crate) fn solve<'py>(
     py: Python<'py>,
     problem: &Bound<'py, PyAny>,

@@ -114,7 +114,7 @@ def test_ctrl_c_ends_settling_and_solving() -> None:
     timer = threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        slump.solve(problem, tolerance=1e-300, repeat=20)
+        slump.solve(problem, "nsgs", tolerance=1e-300, repeat=20)
 
 
 def test_other_threads_run_while_steps_are_taken() -> None:

@@ -314,7 +314,7 @@ enum ProblemCommand {
         /// The problem file
         file: PathBuf,
         /// The method
-        #[arg(long, value_name = "NAME", default_value = "nsgs", value_parser = parser_of::<Method>())]
+        #[arg(long, value_name = "NAME", default_value = "auto", value_parser = parser_of::<Method>())]
         method: Method,
         /// Residual to reach
         #[arg(long, value_name = "X", default_value_t = 1e-8)]

@@ -20,7 +20,7 @@ use crate::output::{Progress, Signal, caught_signal, counted, note_line, print_l
 use crate::render::{Camera, Renderer, Style, draw_scene};
 use crate::scene::{Scene, View};
 use crate::sim::{Alarm, AlarmKind, Observables, Simulation, Snapshot, Tally};
-use crate::solver::Method;
+use crate::solver::{CONTACTS_THAT_FLOW, Method};
 use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
@@ -343,11 +343,15 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     )));
 }
 
-/// Says on stderr which method `auto` took at last.
+/// Reports on stderr which method `auto` took for the last step.
 fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
     if scene.stepper.uses_method() && scene.solver.method == Method::Auto {
         let contacts = simulation.contacts().contacts().len();
-        let name = simulation.picked_method().name();
-        note_line(format_args!("auto took {name} for {contacts} contacts"));
+        let method = simulation.picked_method();
+        let of_flowing = match method == Method::Newton && contacts >= CONTACTS_THAT_FLOW {
+            true => ", and nncg for steps in which the pile flows",
+            false => "",
+        };
+        note_line(format_args!("auto took {method} for {contacts} contacts{of_flowing}"));
     }
 }

@@ -21,7 +21,7 @@ const SLOWEST: Duration = Duration::from_secs(180);
 const REFUSED: &str = "-1 nan inf -inf 1e300 -1e-300 much 0x10";
 
 /// Options with values that mean something.
-const OPTIONS: [&str; 24] = [
+const OPTIONS: [&str; 23] = [
     "--stepper moreau range tgs-soft avbd dem",
     "--bond 0 1 20 1000",
     "--rho 0 0.1 0.9 1",
@@ -38,7 +38,6 @@ const OPTIONS: [&str; 24] = [
     "--model-solves 1 2 5",
     "--push-out true false",
     "--max-travel 0 0.25 1e-3",
-    "--calm-unsolved true false",
     "--sequential-impacts true false",
     "--speculative true false",
     "--preset robust",

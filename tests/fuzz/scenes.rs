@@ -110,7 +110,6 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     scene.remedies = Remedies {
         push_out: u.ratio(1, 4)?,
         max_travel: *u.choose(&[0.0, 0.0, 0.25])?,
-        calm_unsolved: u.ratio(1, 4)?,
         sequential_impacts: u.ratio(1, 4)?,
         speculative: u.ratio(1, 4)?,
     };

@@ -9,7 +9,7 @@ fn refusal(arguments: &[&str]) -> String {
 
 #[test]
 fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
-    let cases: [(&[&str], &str, &str); 28] = [
+    let cases: [(&[&str], &str, &str); 27] = [
         (&["--bond", "-1"], "bond is -1", "≥ 0"),
         (&["--dt", "0"], "dt is 0", "> 0"),
         (&["--dt", "nan"], "dt is NaN", "> 0"),
@@ -23,11 +23,6 @@ fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
         (&["--scene", "heap"], "scene is heap", "pile, cradle, collision"),
         (&["--max-travel", "-1"], "max-travel is -1", "0 never cuts a step"),
         (&["--stepper", "range", "--push-out", "true"], "push-out is given", "it goes with moreau"),
-        (
-            &["--stepper", "range", "--calm-unsolved", "true"],
-            "calm-unsolved is given",
-            "stepper is range",
-        ),
         (
             &["--stepper", "range", "--sequential-impacts", "true"],
             "sequential-imp",
@@ -82,7 +77,7 @@ fn only_settings_that_change_nothing_are_told_of_as_such() {
     let folder = folder();
     let run = "run cradle --times 0 --duration 0.01 --size 8x8 --renderer cpu --frames out --overwrite --stepper";
     for (options, unread) in [
-        ("moreau --push-out --max-travel 0.5 --calm-unsolved --sequential-impacts", None),
+        ("moreau --push-out --max-travel 0.5 --sequential-impacts", None),
         ("range --max-travel 0.5 --debonding-distance 0.02", None),
         ("dem --stiffness 1e6 --max-sweeps 5", Some("the stepper dem does not read max-sweeps")),
         ("moreau --touch-tolerance 1e-3", None),

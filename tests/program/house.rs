@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::import_arrows::{arrows, circles};
+
 /// A file is one concept; longer ones are rarely one.
 const LONGEST_FILE: usize = 500;
 
@@ -87,6 +89,38 @@ fn a_file_can_be_held_in_the_head() {
         .filter(|(_, lines)| *lines > LONGEST_FILE)
         .collect();
     assert!(long.is_empty(), "longer than {LONGEST_FILE} lines: {long:?}");
+}
+
+#[test]
+fn imports_point_one_way() {
+    let sources = sources();
+    let mut back = Vec::new();
+    for (root, own_names) in [("crates/core/src/", &["slump_core"][..])] {
+        let of_crate = sources
+            .iter()
+            .filter_map(|(path, text)| Some((path.strip_prefix(root)?.to_owned(), text.clone())));
+        let arrows = arrows(&of_crate.collect(), own_names);
+        assert!(arrows.len() > 100, "{root}: {} arrows", arrows.len());
+        back.extend(circles(&arrows).into_iter().map(|it| format!("{root}{it}")));
+    }
+    assert!(back.is_empty(), "imports in a circle: {back:#?}");
+}
+
+#[test]
+fn a_circle_of_imports_is_found() {
+    let file = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+    let one_way = [
+        file("lib.rs", "mod a; mod b; pub use b::inner::Item;"),
+        file("a.rs", "use crate::Item; fn f() {}"),
+        file("b/mod.rs", "pub mod inner;"),
+        file("b/inner.rs", "pub struct Item; #[cfg(test)] mod tests { use crate::a::f; }"),
+    ];
+    let mut sources = BTreeMap::from(one_way);
+    assert_eq!(circles(&arrows(&sources, &[])), Vec::<String>::new());
+    sources.extend([file("b/inner.rs", "use super::super::a; pub struct Item;")]);
+    assert_eq!(circles(&arrows(&sources, &[])).len(), 2, "a → b and b → a");
+    sources.extend([file("b/inner.rs", "pub struct Item; fn g() { crate::a::f(); }")]);
+    assert_eq!(circles(&arrows(&sources, &[])).len(), 2, "a path without `use`");
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod documents;
 mod error_budget;
 mod foreign_files;
 mod house;
+mod import_arrows;
 mod limits;
 mod machine_limits;
 mod output_places;

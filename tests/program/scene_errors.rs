@@ -337,13 +337,8 @@ fn what_a_table_of_a_scene_file_leaves_out_has_its_default() {
         friction_model: FrictionModel::Coulomb,
         model_solves: 2,
     };
-    let remedies = Remedies {
-        push_out: true,
-        max_travel: 0.25,
-        calm_unsolved: true,
-        sequential_impacts: true,
-        speculative: true,
-    };
+    let remedies =
+        Remedies { push_out: true, max_travel: 0.25, sequential_impacts: true, speculative: true };
     let parameters = Parameters {
         cone: FrictionCone::Compressive,
         restitution_threshold: 2.0,

@@ -291,7 +291,8 @@ fn a_long_solve_says_how_far_it_is_and_whether_its_budget_ended_it() {
     let problem = folder.path().join("chain.json");
     chain(300, &problem);
     let solved = |sweeps: &str| {
-        let output = run(slump("problem solve").arg(&problem).args(["--max-sweeps", sweeps]));
+        let output =
+            run(slump("problem solve --method nsgs").arg(&problem).args(["--max-sweeps", sweeps]));
         assert!(output.status.success(), "{}", said(&output));
         let told = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
         (told(output.stdout), told(output.stderr))
@@ -313,7 +314,7 @@ fn a_signal_ends_a_long_solve_with_the_impulses_that_it_had() {
     let folder = folder();
     let [problem, out] = ["chain.json", "solution.json"].map(|name| folder.path().join(name));
     chain(20_000, &problem);
-    let mut command = slump("problem solve");
+    let mut command = slump("problem solve --method nsgs");
     command.arg(&problem).arg("--out").arg(&out).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the program starts");
     let mut stderr = BufReader::new(child.stderr.take().expect("stderr"));

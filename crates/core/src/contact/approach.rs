@@ -8,7 +8,7 @@
 use glam::DVec2;
 
 use super::candidates::Candidates;
-use super::contact_list::Contact;
+use super::contact::Contact;
 use super::numbering::{Numbering, Other};
 use crate::number::Parts;
 use crate::world::World;
@@ -55,6 +55,15 @@ fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
     let distance = offset.length();
     let normal = if distance > 0.0 { offset / distance } else { DVec2::X };
     (normal, distance - radii)
+}
+
+impl Contact {
+    /// The gap of the pair where its bodies are now, m, or nothing where another feature touches the grain instead.
+    pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
+        let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
+        let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
+        approach(world, near, position, radius, other, axes).map(|(_, gap)| gap)
+    }
 }
 
 /// Which pairs with a gap are contacts too, because they may touch within the step.

@@ -14,7 +14,7 @@ use super::broad_phase::BroadPhase;
 use super::features::Feature;
 use super::images;
 use super::numbering::{Numbering, Other};
-use super::seams;
+use super::seam_search;
 use crate::error::{Error, Result};
 use crate::world::{Carry, World};
 
@@ -76,7 +76,7 @@ impl Candidates {
             Feature::collect(boundary, &format!("boundaries[{index}]"), &mut features)?;
             boundary_of.resize(features.len(), index);
         }
-        seams::find(&mut features, &boundary_of, world);
+        seam_search::find(&mut features, &boundary_of, world);
         let fixed = world.fixed_discs.iter().map(|disc| disc.radius);
         let radii: Vec<f64> = world.grains.radii.iter().copied().chain(fixed).collect();
         Ok(Self {
@@ -147,7 +147,7 @@ impl Candidates {
 
     /// Finds the common corners of boundaries again, after the motion of a boundary has changed.
     pub(crate) fn find_seams(&mut self, world: &World) {
-        seams::find(&mut self.features, &self.boundary_of, world);
+        seam_search::find(&mut self.features, &self.boundary_of, world);
     }
 
     /// The number of the boundary that a feature is a part of.

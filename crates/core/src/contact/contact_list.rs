@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::approach::{InTouch, LookAhead, approach};
 use super::candidates::Candidates;
+use super::contact::{Contact, ContactMemory, Impulse};
 use super::numbering::{Numbering, Other};
 use super::range::Bond;
 use super::transmitted::{StepSums, Transmitted};
@@ -17,59 +18,6 @@ use crate::world::World;
 
 /// Grains whose contacts one thread finds at a time: a hundred microseconds of work.
 const GRAINS_IN_PART: usize = 2048;
-
-/// One touching pair.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    /// Grain i.
-    pub grain: u32,
-    /// Body j, numbered through ([`Numbering`]).
-    pub other: u32,
-    /// n, from j to i. On a line its y component is 0.
-    pub normal: DVec2,
-    /// m; negative is overlap.
-    pub gap: f64,
-}
-
-impl Contact {
-    /// The bodies (i, other), which contacts are sorted by.
-    pub(crate) fn pair(&self) -> (u32, u32) {
-        (self.grain, self.other)
-    }
-
-    /// The gap of the pair where its bodies are now, m, or nothing where another feature touches the grain instead.
-    pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
-        let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
-        let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
-        approach(world, near, position, radius, other, axes).map(|(_, gap)| gap)
-    }
-}
-
-/// The impulses of one contact, N·s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Impulse {
-    /// P_n.
-    pub normal: f64,
-    /// P_t.
-    pub tangential: f64,
-}
-
-/// What a stepping scheme keeps of a contact from one substep to the next, whatever its length. A
-/// method that solves the step's problem neither reads nor writes it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ContactMemory {
-    /// How far the tangential spring is stretched, m; positive as v_t is.
-    pub tangential_displacement: f64,
-    /// N of the last substep, newton.
-    pub normal_force: f64,
-    /// T of the last substep, newton.
-    pub tangential_force: f64,
-    /// Stiffness of the penalty along normal and tangent, N/m.
-    pub stiffness: [f64; 2],
-}
 
 /// What a stepping scheme reads and changes of contacts, a column each.
 pub(crate) struct ContactParts<'a> {

@@ -3,6 +3,7 @@
 mod approach;
 mod broad_phase;
 mod candidates;
+mod contact;
 mod contact_list;
 mod features;
 mod images;
@@ -10,6 +11,7 @@ mod lanes;
 pub(crate) mod law;
 mod numbering;
 pub mod range;
+mod seam_search;
 mod seams;
 mod too_close;
 mod transmitted;
@@ -19,8 +21,9 @@ pub use broad_phase::BroadPhase;
 #[doc(hidden)]
 pub use broad_phase::Grid;
 pub use candidates::{Candidates, Reach};
+pub use contact::{Contact, ContactMemory, Impulse};
+pub use contact_list::ContactList;
 pub(crate) use contact_list::ContactParts;
-pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
 pub(crate) use features::Feature;
 pub(crate) use lanes::Lanes;
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::contact_list::{Contact, Impulse};
+use super::contact::{Contact, Impulse};
 
 /// What a pair has transmitted since the step began.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

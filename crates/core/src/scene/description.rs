@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{self, Error, Result};
 use crate::scene::NewPile;
-use crate::scene::paper::tone_in_layers;
+use crate::scene::tones::tone_in_layers;
 use crate::setting::words;
 use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;

@@ -8,16 +8,19 @@ mod description;
 pub mod experiments;
 #[cfg(test)]
 mod law_errors;
+mod new_pile;
 mod paper;
 mod preset;
 mod registry;
 pub mod stability;
+mod tones;
 
 pub use deposition::{
-    Deposit, Deposition, NewPile, Rest, Settled, Settling, Support, deposit, drop_and_roll,
-    dropped, settle, start_of, walls,
+    Deposit, Rest, Settled, Settling, Support, deposit, drop_and_roll, dropped, settle, start_of,
+    walls,
 };
 pub use description::{DataSettings, FormatName, GrainSource, Scene, View};
+pub use new_pile::{Deposition, NewPile};
 pub use paper::{collision, cradle, cradle_from, paper_pile, pile_of, put_on_base, rough_base};
 pub use preset::Preset;
 pub use registry::{SCENES, SceneGroup, SceneInfo, built_in};

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use glam::DVec2;
 
 use crate::error::{self, Error, Result};
+use crate::scene::tones::tone_in_layers;
 use crate::scene::{NewPile, Scene, View};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
@@ -22,9 +23,6 @@ const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
 /// Grains of a pile may be this high above the base, and two diameters more for each of them: the
 /// loosest lattice that rain starts from is a column with 1.3 for each.
 const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
-/// Height of the layers that are told apart by their grey, in diameters.
-const LAYER_IN_DIAMETERS: f64 = 2.0;
-const LAYER_TONES: [u8; 2] = [222, 168];
 
 const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 
@@ -90,14 +88,6 @@ pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
     }
     scene.fixed_discs = rough_base(width_in_diameters, scene.mean_diameter);
     Ok(())
-}
-
-/// Gives grains greys by the layer they start in, so that a picture shows what moved where.
-pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
-    for grain in grains {
-        let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;
-        grain.tone = LAYER_TONES[layer.rem_euclid(LAYER_TONES.len() as i64) as usize];
-    }
 }
 
 /// d of the collision and of the cradle, m.

@@ -1,9 +1,8 @@
 //! The one change that is most likely to help against an alarm, under the settings that raised it.
 
 use crate::setting::words;
-use crate::sim::settings::Settings;
+use crate::sim::settings::{Settings, SpringDashpot, Stepper, stable_substeps};
 use crate::sim::state::State;
-use crate::sim::steppers::{SpringDashpot, Stepper, stable_substeps};
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic, Physics, World};
 

@@ -12,7 +12,7 @@ use crate::contact::check_distances;
 use crate::error::{self, Error, Result};
 use crate::sim::pull::gravity_that_scales;
 use crate::sim::simulation::Simulation;
-use crate::sim::snapshot::Surroundings;
+use crate::sim::surroundings::Surroundings;
 use crate::world::{Boundary, Disc, Edge, Grain, Motion, MotionCourse};
 
 /// Smallest and largest new grain, in mean diameters: beyond, the search for neighbours and the conditioning of

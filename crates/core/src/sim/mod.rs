@@ -19,6 +19,8 @@ mod state;
 mod step_times;
 mod steppers;
 mod stepping;
+mod surroundings;
+mod touch_tolerance;
 mod turned_bonds;
 mod walls;
 
@@ -29,11 +31,13 @@ pub use force_sums::{ForceSums, PairSum};
 pub use moment::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 pub use observables::{Beside, Observables, QUANTITIES, Quantity};
 pub use pull::Pull;
-pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};
 pub use run::{RunEnding, Tally};
-pub use settings::Settings;
+pub use settings::{
+    FractureWork, REMEDIES, Remedies, Remedy, RemedyChanges, Settings, SpringDashpot, Stepper,
+    StepperInfo,
+};
 pub use simulation::{ProblemVisitor, Simulation};
-pub use snapshot::{ContactView, GrainView, MotionView, Snapshot, Surroundings, hash_of_bits};
+pub use snapshot::{ContactView, GrainView, Snapshot, hash_of_bits};
 pub use step_times::StepTimes;
-pub use steppers::{FractureWork, SpringDashpot, Stepper, StepperInfo};
 pub use stepping::{Advance, BondEnergies, Stage, StepResult};
+pub use surroundings::{MotionView, Surroundings};

@@ -11,11 +11,10 @@ use crate::contact::{Candidates, Contact, Impulse, Numbering, Other, Transmitted
 use crate::number::Parts;
 use crate::setting::words;
 use crate::sim::observables::Observables;
-use crate::sim::settings::Settings;
+use crate::sim::settings::{Settings, Stepper};
 use crate::sim::simulation::Simulation;
-use crate::sim::snapshot::Surroundings;
 use crate::sim::state::State;
-use crate::sim::steppers::Stepper;
+use crate::sim::surroundings::Surroundings;
 use crate::world::{FrictionCone, Parameters, World};
 
 /// How close to its bound a friction force slips, as a part of the bound. Smaller: contacts that slip stick

@@ -1,8 +1,8 @@
 //! What the numbers of a simulation's settings come to in its world.
 
 use crate::sim::Settings;
+use crate::sim::settings::FractureWork;
 use crate::sim::simulation::Simulation;
-use crate::sim::steppers::FractureWork;
 use crate::solver::{Method, picked};
 
 impl Simulation {

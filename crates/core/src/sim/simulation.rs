@@ -9,15 +9,15 @@ use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
 use crate::sim::alarm::{AlarmKind, Watch};
 use crate::sim::observables::{self, Observables};
-use crate::sim::settings::{Settings, reach_in};
-use crate::sim::snapshot::Surroundings;
-use crate::sim::state::State;
-use crate::sim::step_times::Stopwatch;
-use crate::sim::steppers::{Stepper, StepperMemory};
+use crate::sim::settings::{Settings, Stepper};
+use crate::sim::state::{State, reach_in};
+use crate::sim::step_times::{StepTimes, Stopwatch};
+use crate::sim::steppers::StepperMemory;
 use crate::sim::stepping::{Advance, Stage, StepResult};
+use crate::sim::surroundings::Surroundings;
 use crate::sim::walls::Walls;
 use crate::sim::{Alarm, Pull, remedies};
-use crate::solver::{Model, ModelParts, Slots, SolverSettings, StepProblem};
+use crate::solver::{Model, ModelParts, Slots, Slotted, SolverSettings, StepProblem};
 use crate::world::{Parameters, Physics, World};
 use crate::{threads, with_model};
 
@@ -113,6 +113,20 @@ impl Simulation {
         self.look()
     }
 
+    /// Takes one step and tells what it took by a clock, which gives s since some moment. The step is the one that
+    /// [`Simulation::step`] would have taken.
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    pub fn timed_step(&mut self, clock: fn() -> f64) -> Result<StepTimes> {
+        self.state.stopwatch = Stopwatch { clock: Some(clock), ..Stopwatch::default() };
+        let begun = clock();
+        let outcome = self.step().map(|_| ());
+        let total_secs = clock() - begun;
+        let times = std::mem::take(&mut self.state.stopwatch).times;
+        outcome.map(|()| StepTimes { total_secs, ..times })
+    }
+
     /// Takes one step in a way of your own, in place of the settings' stepper.
     ///
     /// ```
@@ -166,7 +180,7 @@ impl Simulation {
     }
 
     /// Takes a step in so many pieces of equal length.
-    fn take_step_of<M: Model>(&mut self, pieces: u32, advance: &mut impl Advance) {
+    fn take_step_of<M: Slotted>(&mut self, pieces: u32, advance: &mut impl Advance) {
         let Self {
             state, settings, slots, observables, initial_heights, last_stepper, watch, ..
         } = self;
@@ -430,5 +444,40 @@ impl Simulation {
             return Err(Error::value("hand", "on no wall", "on the wall of the last motion"));
         }
         Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use super::*;
+    use crate::scene::built_in;
+    use crate::sim::Stepper;
+
+    /// A clock that goes on by one each time it is looked at.
+    fn looks() -> f64 {
+        static LOOKS: AtomicU32 = AtomicU32::new(0);
+        f64::from(LOOKS.fetch_add(1, Ordering::Relaxed))
+    }
+
+    #[test]
+    fn a_timed_step_is_the_step_and_its_parts_are_within_it() {
+        for &stepper in Stepper::ALL {
+            let mut scene = built_in("pile").unwrap();
+            scene.stepper = stepper;
+            let mut timed = scene.simulation().unwrap();
+            timed.take_steps(3).unwrap();
+            let mut untimed = timed.clone();
+            untimed.step().unwrap();
+            let times = timed.timed_step(looks).unwrap();
+            let name = stepper.name();
+            assert_eq!(timed.snapshot().state_hash(), untimed.snapshot().state_hash(), "{name}");
+            let StepTimes { detection_secs, solving_secs, total_secs } = times;
+            assert!(detection_secs > 0.0, "{name}: {times:?}");
+            assert_eq!(solving_secs > 0.0, stepper.uses_method(), "{name}: {times:?}");
+            assert!(detection_secs + solving_secs < total_secs, "{name}: {times:?}");
+            assert!(timed.state.stopwatch.clock.is_none(), "the next step is not timed");
+        }
     }
 }

@@ -3,9 +3,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Candidates, ContactList, LookAhead, Reach};
-use crate::error::Result;
-use crate::sim::pull::Pull;
+use crate::contact::{Candidates, ContactList, LookAhead, Reach, check_distances};
+use crate::error::{Error, Result};
+use crate::sim::pull::{Pull, Push};
+use crate::sim::settings::Settings;
 use crate::sim::step_times::Stopwatch;
 use crate::sim::walls::Walls;
 use crate::solver::{Model, ModelParts};
@@ -13,7 +14,7 @@ use crate::world::{Parameters, Physics, World};
 
 /// Skin of the candidate search, in units of d. Smaller: the list is built more often; larger: more
 /// pairs are looked at in vain. Does not change any result.
-pub(super) const SKIN_IN_DIAMETERS: f64 = 0.2;
+const SKIN_IN_DIAMETERS: f64 = 0.2;
 
 /// A world with the contacts of its last step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -43,6 +44,11 @@ impl State {
     /// The model that computes what there is, and no more.
     pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
         ModelParts::leanest(self.physics, self.world.periodic, parameters)
+    }
+
+    /// The number of substeps that the stepper takes in a step.
+    pub(crate) fn substeps(&self, settings: &Settings) -> u32 {
+        (settings.stepper.info().substeps)(&self.world, self.physics, &settings.parameters)
     }
 
     /// Begins a step of that length: the contacts' forces stay what they were, walls get their speeds, and gravity its
@@ -136,6 +142,24 @@ impl State {
         }
     }
 
+    /// What pushes grains from outside in the next `secs`: a spring, and body forces.
+    pub(super) fn pushes(&self, axes: usize, secs: f64) -> Vec<Push> {
+        let masses = &self.world.grains.masses;
+        let spring = self.pull.and_then(|pull| pull.push(&self.world, axes, secs));
+        let forces = self.body_forces.iter().zip(masses).enumerate();
+        let forces =
+            forces.filter_map(|(grain, (&force, mass))| Push::of(grain, secs / mass * force));
+        spring.into_iter().chain(forces).collect()
+    }
+
+    /// The largest acceleration of a grain by gravity and body forces, m/s²: the next step looks for contacts as far as that
+    /// may lead.
+    pub(super) fn largest_acceleration(&self) -> f64 {
+        let forces = self.body_forces.iter().zip(&self.world.grains.masses);
+        let largest = forces.map(|(force, mass)| force.length() / mass).fold(0.0, f64::max);
+        self.world.gravity.magnitude() + largest
+    }
+
     /// True where all positions and velocities are numbers.
     pub(crate) fn is_finite(&self) -> bool {
         let grains = &self.world.grains;
@@ -180,4 +204,31 @@ impl State {
         self.candidates = Candidates::new(&self.world, Reach { skin, gap_tolerance })?;
         Ok(())
     }
+}
+
+/// The diameter that lengths are measured in is at most this many radii of the largest grain: the
+/// skin goes with it, and all that lie within the skin are candidates.
+const MOST_RADII_OF_DIAMETER: f64 = 200.0;
+
+/// How far a world's candidate search looks, where its lengths leave each disc few others to touch.
+pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
+    let diameter = world.mean_diameter;
+    if !(diameter > 0.0 && diameter.is_finite()) {
+        return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
+    }
+    let most = MOST_RADII_OF_DIAMETER * world.grains.radii.iter().copied().fold(0.0, f64::max);
+    if diameter > most {
+        let allowed = format!("at most {most} m, 100 times the diameter of the largest grain");
+        return Err(Error::value("mean_diameter", diameter, allowed));
+    }
+    let skin = SKIN_IN_DIAMETERS * diameter;
+    // Of much smaller discs, all within the tolerance would touch.
+    let least_radius = world.grains.radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = (0.1 * skin).min(least_radius);
+    if !(0.0..most).contains(&gap_tolerance) {
+        let allowed = format!("≥ 0 and below {most} m");
+        return Err(Error::value("gap_tolerance", gap_tolerance, allowed));
+    }
+    check_distances(world)?;
+    Ok(Reach { skin, gap_tolerance })
 }

@@ -16,8 +16,8 @@
 use crate::contact::Contact;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::moreau::touch_tolerance;
 use crate::sim::stepping::Stage;
+use crate::sim::touch_tolerance::touch_tolerance;
 use crate::solver::{Model, for_each_row};
 
 /// Counts the bonds that ended so in a solved step, once the grains have moved.

@@ -24,7 +24,6 @@ use std::fmt::Debug;
 
 use glam::DVec2;
 
-use super::model::{Slot, Slots};
 use crate::contact::{Contact, Lanes};
 use crate::world::World;
 
@@ -53,8 +52,6 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// Inertia of each degree of freedom over the body's mass: with s = rω, ½Iω² = ½(m/2)s².
     const INERTIA_OVER_MASS: [f64; 3];
 
-    /// The slot of its problems.
-    fn slot(slots: &mut Slots) -> &mut Slot<Self>;
     /// Packs grain `index` of a world.
     fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index`.
@@ -165,10 +162,6 @@ impl Model for Line {
     const TANGENTIAL_COMPLIANCE: f64 = 1.0;
     const DEGREES: usize = 1;
     const INERTIA_OVER_MASS: [f64; 3] = [1.0, 0.0, 0.0];
-
-    fn slot(slots: &mut Slots) -> &mut Slot<Self> {
-        &mut slots.line
-    }
 
     #[inline(always)]
     fn coordinates<T: Lanes>(body: &LineBody<T>) -> [T; 3] {
@@ -289,7 +282,7 @@ pub struct SlidingNormal<T> {
 
 /// What all kinds of motion in the plane share. `own` is what one of them has of its own.
 macro_rules! plane_model {
-    ($name:ident, $slot:ident, $normal:ty, |$of:ident| $packed:expr, $along_axes:expr, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
+    ($name:ident, $normal:ty, |$of:ident| $packed:expr, $along_axes:expr, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
         impl Model for $name {
             type Body<T: Lanes> = PlaneBody<T>;
             type Normal<T: Lanes> = $normal;
@@ -300,10 +293,6 @@ macro_rules! plane_model {
             const TANGENTIAL_COMPLIANCE: f64 = if $rotation { 3.0 } else { 1.0 };
             const DEGREES: usize = if $rotation { 3 } else { 2 };
             const INERTIA_OVER_MASS: [f64; 3] = [1.0, 1.0, 0.5];
-
-            fn slot(slots: &mut Slots) -> &mut Slot<Self> {
-                &mut slots.$slot
-            }
 
             #[inline(always)]
             fn coordinates<T: Lanes>(body: &PlaneBody<T>) -> [T; 3] {
@@ -451,10 +440,10 @@ macro_rules! plane_model {
     };
 }
 
-plane_model!(SmoothPlane, smooth_plane, [T; 2], |normal| normal, normal, friction: false, rotation: false, own: {});
-plane_model!(Plane, plane, [T; 2], |normal| normal, normal, friction: true, rotation: false, own: {});
-plane_model!(SpinningPlane, spinning_plane, [T; 2], |normal| normal, normal, friction: true, rotation: true, own: {});
-plane_model!(ShearedPlane, sheared_plane, SlidingNormal<T>, |normal| SlidingNormal { normal, slide: normal[0].same(0.0) }, normal.normal, friction: true, rotation: true, own: {
+plane_model!(SmoothPlane, [T; 2], |normal| normal, normal, friction: false, rotation: false, own: {});
+plane_model!(Plane, [T; 2], |normal| normal, normal, friction: true, rotation: false, own: {});
+plane_model!(SpinningPlane, [T; 2], |normal| normal, normal, friction: true, rotation: true, own: {});
+plane_model!(ShearedPlane, SlidingNormal<T>, |normal| SlidingNormal { normal, slide: normal[0].same(0.0) }, normal.normal, friction: true, rotation: true, own: {
     const SLIDES: bool = true;
 
     #[inline(always)]

@@ -16,7 +16,7 @@ words! {
         InteriorPoint = "interior-point",
             "interior point, sparse direct: the convex models of friction to any tolerance";
         Auto = "auto",
-            "interior-point; under Coulomb's law newton, nncg above 10,000 contacts, nsgs where sweeps are studied";
+            "newton under Coulomb's law, nncg while a large pile flows; interior-point under convex models of friction";
     }
 }
 

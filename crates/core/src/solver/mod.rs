@@ -32,9 +32,11 @@ pub(crate) use methods::picked;
 pub(crate) use methods::solve_within_bounds;
 #[doc(hidden)]
 pub use methods::sweep;
-pub use methods::{BodySystem, ContactSystem, Memory, ScaledVector, SolveReport};
+pub use methods::{
+    BodySystem, CONTACTS_THAT_FLOW, ContactSystem, Memory, ScaledVector, SolveReport,
+};
 pub(crate) use model::cone_of;
-pub use model::{ModelParts, Slot, Slots};
+pub use model::{ModelParts, Slot, Slots, Slotted};
 pub use onlooker::{SolveProgress, is_ended, look_on};
 pub use problem::{
     Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures,

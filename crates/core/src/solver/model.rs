@@ -77,9 +77,26 @@ pub struct Slot<M: Model> {
 /// A slot for each model; those that a scene never uses hold no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
-    pub(super) line: Slot<Line>,
-    pub(super) smooth_plane: Slot<SmoothPlane>,
-    pub(super) plane: Slot<Plane>,
-    pub(super) spinning_plane: Slot<SpinningPlane>,
-    pub(super) sheared_plane: Slot<ShearedPlane>,
+    line: Slot<Line>,
+    smooth_plane: Slot<SmoothPlane>,
+    plane: Slot<Plane>,
+    spinning_plane: Slot<SpinningPlane>,
+    sheared_plane: Slot<ShearedPlane>,
 }
+
+/// A model whose problems have a slot.
+pub trait Slotted: Model {
+    /// Its slot.
+    fn slot(slots: &mut Slots) -> &mut Slot<Self>;
+}
+
+macro_rules! slotted {
+    ($($Name:ident: $slot:ident),*) => {
+        $(impl Slotted for $Name {
+            fn slot(slots: &mut Slots) -> &mut Slot<Self> {
+                &mut slots.$slot
+            }
+        })*
+    };
+}
+slotted!(Line: line, SmoothPlane: smooth_plane, Plane: plane, SpinningPlane: spinning_plane, ShearedPlane: sheared_plane);

@@ -93,6 +93,40 @@ impl World {
             Some(periodic) => periodic.shortest(offset),
         }
     }
+
+    /// How fast the image of grain `j` goes that is nearest to grain `i`, beside grain `j` itself, m/s along x; 0
+    /// where no border shears.
+    #[inline]
+    pub(crate) fn speed_of_image(&self, i: usize, j: usize) -> f64 {
+        let places = &self.grains.positions;
+        self.periodic.map_or(0.0, |periodic| periodic.speed_of_image(places[i] - places[j]))
+    }
+
+    /// Brings all discs back into the cell, where there is one. Gives the work that this did on grains, J: where
+    /// borders shear, velocities change with the places.
+    pub(crate) fn wrap(&mut self) -> f64 {
+        let Some(periodic) = self.periodic else { return 0.0 };
+        let mut work = 0.0;
+        if periodic.is_sheared() {
+            let grains = &mut self.grains;
+            let moving = grains.positions.iter().zip(&mut grains.velocities).zip(&grains.masses);
+            for ((place, velocity), mass) in moving {
+                let change = -periodic.border_speed() * periodic.cells_above(place.y);
+                work += mass * change * (velocity.x + 0.5 * change);
+                velocity.x += change;
+            }
+        }
+        let grains = &mut self.grains;
+        for (place, brought_back) in grains.positions.iter_mut().zip(&mut grains.brought_back) {
+            let wrapped = periodic.wrap(*place);
+            *brought_back += *place - wrapped;
+            *place = wrapped;
+        }
+        for disc in &mut self.fixed_discs {
+            disc.position = periodic.wrap(disc.position);
+        }
+        work
+    }
 }
 
 /// The physics that a scene needs. A step is compiled for just that.

@@ -14,9 +14,10 @@ use rand_pcg::Pcg64;
 use crate::error::Result;
 use crate::scene::deposition::rolling::{Deposit, dropped};
 use crate::scene::deposition::{
-    LARGEST_RADIUS, NewPile, REST_SECS, Settled, Settling, in_a_box, interrupted, kinetic_energy,
+    LARGEST_RADIUS, REST_SECS, Settled, Settling, in_a_box, interrupted, kinetic_energy,
     not_at_rest, random_radius, speeds,
 };
+use crate::scene::new_pile::NewPile;
 use crate::scene::paper::{DIAMETER, GRAVITY, rough_base};
 use crate::sim::Simulation;
 use crate::solver::SolverSettings;

@@ -10,80 +10,14 @@ pub use rolling::{Deposit, Rest, Support, dropped};
 use glam::DVec2;
 use rand::RngExt;
 use rand_pcg::Pcg64;
-use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+use crate::scene::new_pile::{Deposition, NewPile};
 use crate::scene::paper::{DIAMETER, GRAVITY, pile_of};
-use crate::setting::words;
 use crate::sim::{Observables, Simulation};
 use crate::solver::SolverSettings;
 use crate::world::{Boundary, Grain, Parameters};
-
-/// Spacing of the rain's lattice, in diameters: room for the largest disc and its jitter.
-const SPACING: f64 = 1.3;
-
-words! {
-    /// How the grains of a new pile are put in place.
-    #[derive(Default)]
-    pub enum Deposition {
-        #[default]
-        Rain = "rain", "They fall together through a medium, as for the shipped state: minutes for 2,000 grains";
-        DropAndRoll = "drop-and-roll", "One by one, each rolling to where two others hold it: a denser pile with more contacts, in seconds for 10,000 grains";
-    }
-}
-
-/// A new pile.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct NewPile {
-    /// Number of grains.
-    pub grains: usize,
-    /// Width of the box, in diameters.
-    pub box_width_in_diameters: f64,
-    /// Seed of diameters and places.
-    pub seed: u64,
-    /// How they are put in place.
-    #[serde(skip_serializing_if = "is_rain")]
-    pub deposition: Deposition,
-}
-
-/// Files that say nothing of it are as old as rain.
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
-fn is_rain(deposition: &Deposition) -> bool {
-    *deposition == Deposition::Rain
-}
-
-impl Default for NewPile {
-    /// The paper's 138 grains. The seed is one of nine tried: with it, single runs of Fig. 4 show
-    /// what means over many initial states show.
-    fn default() -> Self {
-        Self { grains: 138, box_width_in_diameters: 16.0, seed: 8, deposition: Deposition::Rain }
-    }
-}
-
-impl NewPile {
-    /// Checks the numbers against their ranges.
-    ///
-    /// # Errors
-    /// Names the field, its value and its range.
-    pub fn validate(&self) -> Result<()> {
-        let width = self.box_width_in_diameters;
-        if !(SPACING..1e6).contains(&width) {
-            let allowed = format!("between {SPACING} and 1e6 diameters");
-            return Err(Error::value("box-width", width, allowed));
-        }
-        if !(1..=1_000_000).contains(&self.grains) {
-            return Err(Error::value("grains", self.grains, "between 1 and 1,000,000"));
-        }
-        Ok(())
-    }
-
-    /// Discs side by side in a row of the rain's lattice.
-    fn columns(&self) -> usize {
-        (self.box_width_in_diameters / SPACING).floor() as usize
-    }
-}
 
 /// Makes an initial state. `progress` is called now and then; where it returns false, the settling
 /// is given up with an error.

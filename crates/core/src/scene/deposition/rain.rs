@@ -11,9 +11,9 @@ use rand_pcg::Pcg64;
 
 use crate::error::Result;
 use crate::scene::deposition::{
-    NewPile, REST_SECS, SPACING, Settled, Settling, fastest, in_a_box, interrupted, not_at_rest,
-    random_radius,
+    REST_SECS, Settled, Settling, fastest, in_a_box, interrupted, not_at_rest, random_radius,
 };
+use crate::scene::new_pile::{NewPile, SPACING};
 use crate::scene::paper::{DIAMETER, GRAVITY};
 use crate::solver::SolverSettings;
 use crate::world::Grain;

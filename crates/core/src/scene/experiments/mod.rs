@@ -13,8 +13,8 @@ pub use shear::{ShearCell, biaxial, shear, shear_of, shear_periodic};
 use glam::DVec2;
 
 use super::Scene;
-use super::paper::tone_in_layers;
 use super::stability::{DIAMETER, dry, view};
+use super::tones::tone_in_layers;
 
 use crate::world::{Boundary, Grain, Motion, MotionCourse};
 

@@ -27,30 +27,17 @@ use crate::contact::{ContactLaw, law};
 use crate::number::Parts;
 use crate::sim::pull::acceleration_of_springs;
 use crate::sim::settings::Settings;
-use crate::sim::steppers::StepperInfo;
 use crate::sim::steppers::substeps::{self, Substepping, Touching};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{Model, Row, StepProblem};
 use crate::world::Parameters;
 
-pub(super) const INFO: StepperInfo = StepperInfo {
-    solves: "the step's problem by penalties and multipliers, as far as its iterations get",
-    source: "C. Giles, E. Diaz and C. Yuksel (2025)",
-    settings: "bond bond-acceleration dt tilt mu cone warm-start substeps",
-    substeps: |_, _, parameters| substeps(parameters),
-    ..StepperInfo::WHOLE
-};
-
 /// Iterations of a substep: what its authors' examples take.
 const ITERATIONS: u32 = 10;
 
-fn substeps(parameters: &Parameters) -> u32 {
-    parameters.substeps.max(1)
-}
-
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
-    let substeps = substeps(&settings.parameters);
-    let substepping = &mut Substepping::begin_step(stage, settings, substeps);
+    let substepping = &mut Substepping::begin_step(stage, settings);
+    let substeps = substepping.count;
     let substep_secs = substepping.substep_secs;
     let gap_tolerance = stage.state.candidates.gap_tolerance();
     let capture_speed = stage.problem.law.capture_speed() / f64::from(substeps);

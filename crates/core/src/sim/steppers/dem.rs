@@ -10,52 +10,27 @@
 use crate::contact::{Contact, ContactLaw, ContactMemory, ContactParts, Impulse, Transmitted, law};
 use crate::number::Parts;
 use crate::sim::settings::Settings;
+use crate::sim::settings::SpringDashpot;
 use crate::sim::state::State;
-use crate::sim::steppers::spring_dashpot::{
-    SpringDashpot, check_substeps, contact_time_secs, critical_time_step_secs, substeps,
-};
 use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
-use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
-
-/// The row of the registry. Springs carry their stretch on whether asked to or not, so nothing is told of a
-/// warm start.
-pub(super) const INFO: StepperInfo = StepperInfo {
-    solves: "nothing exactly: contacts are damped springs",
-    source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
-    settings: "bond bond-acceleration dt tilt rho mu cone stiffness damping-ratio substeps",
-    takes_drives: true,
-    check_in: check_substeps,
-    substeps,
-    critical_time_step_secs: |world, physics, parameters| {
-        Some(critical_time_step_secs(world, physics, parameters))
-    },
-    contact_time_secs: |world, physics, parameters| {
-        Some(contact_time_secs(world, physics, parameters))
-    },
-    fracture_work: |world, physics, parameters| {
-        let springs = SpringDashpot::of(world, physics.axes, parameters);
-        fracture_work_of(world, physics, parameters, |force| springs.fracture_work(force))
-    },
-    ..StepperInfo::WHOLE
-};
 
 /// Takes one step. Contacts are detected in each substep; the problem's rows, those of the beginning of the
 /// step, get what their pairs transmitted in all.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let (world, physics) = (&stage.state.world, stage.state.physics);
     let parameters = &settings.parameters;
-    let substeps = substeps(world, physics, parameters);
     let cohesion = if physics.cohesion { parameters.bond } else { 0.0 };
     let elements = Elements {
         springs: SpringDashpot::of(world, physics.axes, parameters),
         cohesive_acceleration: cohesion
             * parameters.cohesion_acceleration(world.gravity.magnitude()),
         law: ContactLaw::new(parameters.friction, 0.0, cone_of(physics, parameters)),
-        substep_secs: parameters.time_step_secs / f64::from(substeps),
+        substep_secs: parameters.time_step_secs / f64::from(stage.state.substeps(settings)),
     };
-    let substepping = &mut Substepping::begin_step(stage, settings, substeps);
+    let substepping = &mut Substepping::begin_step(stage, settings);
+    let substeps = substepping.count;
     stage.state.walls.divide(substeps);
     let of_step = stage.state.contacts.contacts().to_vec();
     stage.state.contacts.impulses_mut().fill(Impulse::default());

@@ -5,19 +5,10 @@ use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::{Stepper, StepperInfo};
 use crate::sim::stepping::{Stage, StepResult};
+use crate::sim::touch_tolerance::touch_tolerance;
 use crate::sim::turned_bonds;
 use crate::solver::{Approach, Model};
-
-pub(super) const INFO: StepperInfo = StepperInfo {
-    solves: "each step's problem under Signorini's law with cohesion and Coulomb's law",
-    source: "A. Abramian, L. Staron, Time Steps v.s. Cohesion (2020); J. J. Moreau (1988)",
-    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold touch-tolerance solver ordering \
-        stop tolerance max-sweeps warm-start friction-model model-solves",
-    takes_drives: true,
-    ..StepperInfo::WHOLE
-};
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     set_up(stage, settings);
@@ -30,7 +21,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
 }
 
 /// Detects the contacts and sets up the problem of the next step.
-pub(in crate::sim) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
+pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let parameters = settings.parameters;
     let world = stage.world();
     let gravity_magnitude = world.gravity.magnitude();
@@ -67,21 +58,4 @@ pub(in crate::sim) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Sett
 fn touching_within(state: &State, tolerance: f64) -> f64 {
     let rounding = (0.5 * tolerance).min(TOUCH_IN_DIAMETERS * state.world.mean_diameter);
     rounding.max(state.candidates.gap_tolerance())
-}
-
-/// The gap up to which contacts pull, m; 0 if that is no more than where they touch, and in a step that another stepper takes.
-///
-/// Within it a contact has the law of one that touches, but its grains may come to each other as far as the gap lets
-/// them:
-///
-/// > 0 ≤ P + C₀Δt ⟂ v_n + gap/Δt ≥ 0.
-///
-/// Gaps of half the tolerance, at most those of [`TOUCH_IN_DIAMETERS`], are rounding, within which grains touch: without
-/// that room a pyramid of logs falls. So a contact pulls by C₀ until its gap is closed, and a bond takes the work
-/// C₀ (τ + what the pair opens within a step) to break. A pair that turns opens by ½ω²Δt²·L a step ([`turned_bonds`]):
-/// below the tolerance the next step closes that.
-pub(in crate::sim) fn touch_tolerance(state: &State, settings: &Settings) -> f64 {
-    let tolerance = settings.parameters.touch_tolerance * state.world.mean_diameter;
-    let is_read = settings.stepper == Stepper::Moreau;
-    if is_read && tolerance > state.candidates.gap_tolerance() { tolerance } else { 0.0 }
 }

@@ -17,6 +17,8 @@ use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, m
 /// A step on its way through its substeps. Lives for one step: what is carried on is in the
 /// world and in the contacts' memories.
 pub(super) struct Substepping<M: Model> {
+    /// Number of substeps of the step.
+    pub count: u32,
     /// h, s.
     pub substep_secs: f64,
     /// Bodies at the beginning of the substep.
@@ -28,12 +30,14 @@ pub(super) struct Substepping<M: Model> {
 }
 
 impl<M: Model> Substepping<M> {
-    /// Begins a step in so many substeps: its problem is set up, and the bodies are where they were.
-    pub(super) fn begin_step(stage: &mut Stage<'_, M>, settings: &Settings, substeps: u32) -> Self {
+    /// Begins a step: sets up its problem with the bodies where they were. The stepper decides the number of substeps.
+    pub(super) fn begin_step(stage: &mut Stage<'_, M>, settings: &Settings) -> Self {
+        let count = stage.state.substeps(settings);
         set_up(stage, settings);
         stage.problem.bodies.now.clone_from(&stage.problem.bodies.before);
         Self {
-            substep_secs: settings.parameters.time_step_secs / f64::from(substeps),
+            count,
+            substep_secs: settings.parameters.time_step_secs / f64::from(count),
             start: Vec::new(),
             free: Vec::new(),
             works: StepResult::nothing_yet(),

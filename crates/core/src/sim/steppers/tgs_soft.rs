@@ -24,30 +24,14 @@ use crate::number::Parts;
 use crate::sim::pull::acceleration_of_springs;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::StepperInfo;
 use crate::sim::steppers::substeps::{self, Substepping, Touching, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenRow, DrivenWall, Model, Row, StepProblem};
 use crate::world::{Parameters, World};
 
-pub(super) const INFO: StepperInfo = StepperInfo {
-    solves: "nothing exactly: contacts are damped springs",
-    source: "E. Catto, Solver2D (2024)",
-    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold warm-start substeps",
-    takes_drives: true,
-    substeps: |_, _, parameters| substeps(parameters),
-    ..StepperInfo::WHOLE
-};
-
-/// Substeps where their number is left to the scheme. More: stiffer contacts, better solved.
-const DEFAULT_SUBSTEPS: u32 = 4;
-fn substeps(parameters: &Parameters) -> u32 {
-    if parameters.substeps == 0 { DEFAULT_SUBSTEPS } else { parameters.substeps }
-}
-
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
-    let substeps = substeps(&settings.parameters);
-    let substepping = &mut Substepping::begin_step(stage, settings, substeps);
+    let substepping = &mut Substepping::begin_step(stage, settings);
+    let substeps = substepping.count;
     let substep_secs = substepping.substep_secs;
     let (world, law) = (&stage.state.world, stage.problem.law);
     let softness = Softness::new(world, law, substep_secs, &settings.parameters);

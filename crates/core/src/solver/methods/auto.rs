@@ -29,10 +29,12 @@ const PATIENCE_OF_CONTACTS: usize = 20_000;
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
 const MOST_PATIENCE: usize = 100;
 
-/// A problem of that many contacts flows if more than this share of the contacts between grains slide faster than this, in
-/// √(g d), when its step begins. Of 2,000 standing grains none do, of 2,000 falling ones .08 to .3 after the first steps.
-const CONTACTS_THAT_FLOW: usize = 500;
+/// `auto` sweeps a pile that flows from this number of contacts on. Below it Newton's method costs less for the same error.
+pub const CONTACTS_THAT_FLOW: usize = 500;
+/// A pile flows if more than this share of the contacts between grains slide faster than [`SLIDING_SPEED`] when its step
+/// begins. Of 2,000 standing grains none do, of 2,000 falling grains 0.08 to 0.3 after the first steps.
 const SLIDING_SHARE: f64 = 0.05;
+/// The speed of a sliding contact, in √(g d).
 const SLIDING_SPEED: f64 = 0.02;
 
 /// Sweeps of conjugate gradients if Newton's method did not solve a step. 200 instead of 400 leave 1.5 times the error at 2,000

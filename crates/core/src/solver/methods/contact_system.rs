@@ -13,7 +13,7 @@
 //!
 //! Both scaled quantities have the unit √J. A method written on this trait knows nothing of bodies.
 
-use super::nsgs::{sweep, tested_sweep};
+use super::pass::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
 use crate::contact::law;
 use crate::solver::kinematics::Model;

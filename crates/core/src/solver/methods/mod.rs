@@ -6,24 +6,27 @@ mod auto;
 mod contact_system;
 mod interior_point;
 mod jacobi;
+mod model_solves;
 mod newton;
 mod nncg;
 mod nonlinear_elimination;
 mod nsgs;
 mod nsgs_parallel;
+mod pass;
 #[cfg(test)]
 mod random_problem;
 mod stopping;
 mod sweep;
 mod wedged;
 
+pub use self::auto::CONTACTS_THAT_FLOW;
 pub(crate) use self::auto::picked;
 pub(crate) use self::contact_system::WorkVectors;
 pub use self::contact_system::{BodySystem, ContactSystem, ScaledVector};
 #[cfg(test)]
 pub(crate) use self::interior_point::solve_within_bounds;
 use self::newton::NewtonEffort;
-pub use self::nsgs::sweep;
+pub use self::pass::sweep;
 pub use self::stopping::SolveReport;
 pub(super) use self::stopping::sweep_until_settled;
 use super::kinematics::Model;

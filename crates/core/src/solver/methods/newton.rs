@@ -28,7 +28,7 @@
 use super::contact_system::{BodySystem, WorkVectors};
 use super::nncg;
 use super::nonlinear_elimination::NonlinearElimination;
-use super::nsgs::{settles_in, sweep};
+use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;
 use crate::contact::law::{coulomb, signorini};
 use crate::solver::kinematics::Model;

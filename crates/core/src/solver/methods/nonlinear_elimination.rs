@@ -112,7 +112,7 @@ mod tests {
     use super::*;
     use crate::contact::ContactLaw;
     use crate::solver::SpinningPlane;
-    use crate::solver::methods::nsgs::sweep;
+    use crate::solver::methods::pass::sweep;
     use crate::solver::methods::random_problem::random_problem;
     use crate::world::FrictionCone;
 

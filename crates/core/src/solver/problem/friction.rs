@@ -15,7 +15,6 @@
 //! the metric diag(1, m_n/m_t). That is Gauss–Seidel's update of a solid disc's contact, whose Delassus
 //! block is diagonal, and the natural map.
 
-use super::residual::{Sums, common_map, projection_map};
 use super::{Row, StepProblem};
 use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
@@ -44,16 +43,6 @@ pub(crate) trait FrictionProjection: Sized {
 
     /// The (σ, λ_t) that are allowed nearest to `trial`, in the metric diag(1, m_n/m_t).
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
-
-    /// The natural map's residual of this projection.
-    fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
-        Self::map(problem).residual(problem)
-    }
-
-    /// What that is made of.
-    fn map<M: Model>(problem: &StepProblem<M>) -> Sums {
-        projection_map::<M, Self>(problem)
-    }
 }
 
 /// Evaluates an expression for the projection that a problem is solved by.
@@ -95,10 +84,6 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
         }
         let shifted = law::signorini(trial[0]);
         [shifted, law::coulomb(trial[1], law.friction * shifted)]
-    }
-
-    fn map<M: Model>(problem: &StepProblem<M>) -> Sums {
-        common_map(problem)
     }
 }
 

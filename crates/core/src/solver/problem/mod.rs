@@ -5,8 +5,10 @@
 //! takes from all of these.
 
 mod friction;
+mod measures;
 mod order;
 mod residual;
+mod row_velocities;
 mod rows;
 mod solved;
 mod velocity_error;
@@ -18,13 +20,15 @@ pub(crate) use self::friction::{
     BoundedFriction, ConeFriction, CoulombFriction, FrictionProjection, LaggedFriction,
     project_by_coulomb, with_projection,
 };
+pub use self::measures::{Measures, measure, worst};
 use self::order::RowOrder;
-pub use self::residual::{
-    Measures, RowVelocities, for_each_row, measure, relative_velocities, residual, worst,
+pub use self::residual::residual;
+pub(crate) use self::residual::{
+    errors, natural_map, projection_residual, residual_of, squared_impulse, squared_residual_scale,
 };
-pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
+pub use self::row_velocities::{RowVelocities, for_each_row, relative_velocities};
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
-pub(crate) use self::solved::{is_solved, squared_impulse, squared_impulses};
+pub(crate) use self::solved::{is_solved, squared_impulses};
 pub use self::velocity_error::{VelocityError, velocity_error};
 pub(crate) use self::walls::MovingWalls;
 pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, MovingSurfaces, Surface};

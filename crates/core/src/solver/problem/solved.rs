@@ -1,9 +1,9 @@
 //! The one place that decides whether a step is solved.
 
-use super::residual::rounding;
-use super::{FrictionProjection, StepProblem, velocity_error, with_projection};
+use super::residual::{natural_map_sums, rounding, squared_impulse};
+use super::{StepProblem, velocity_error};
 use crate::solver::kinematics::Model;
-use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
+use crate::solver::settings::{SolverSettings, StopTest};
 
 /// True where a problem is solved as well as these settings promise, whoever solved it and whatever that says of itself.
 ///
@@ -22,7 +22,7 @@ pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSet
     if settings.stop == StopTest::VelocityError {
         return velocity_error(problem).is_within(tolerance);
     }
-    let map = with_projection!(problem, M, P => P::map(problem));
+    let map = natural_map_sums(problem);
     let change = match settings.stop {
         StopTest::RelativeChange => tolerance * squared_impulses(problem).sqrt(),
         StopTest::ImpulsePerMass => tolerance * problem.bodies.mean_mass,
@@ -35,12 +35,6 @@ pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSet
 /// C in [`is_solved`]. Smaller: what sweeps leave among discs of many sizes may be refused; larger: impulses pass that
 /// rest where nothing is solved.
 const LEFT_OF_CHANGE: f64 = 8.0;
-
-/// P² of an impulse (λ_n, λ_t) of an effective mass, (N·s)².
-#[inline(always)]
-pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
-    mass * mass * (normal * normal + tangential * tangential)
-}
 
 /// Σ P², (N·s)².
 pub(crate) fn squared_impulses<M: Model>(problem: &StepProblem<M>) -> f64 {

@@ -36,7 +36,8 @@
 
 use glam::DVec2;
 
-use super::residual::{ROUNDING, RowVelocities, sum_of_rows};
+use super::residual::ROUNDING;
+use super::row_velocities::{RowVelocities, sum_of_rows};
 use super::{Row, StepProblem};
 use crate::contact::law;
 use crate::number::Parts;

@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 use crate::contact::range::{Bond, OpeningMotion};
 use crate::number::Parts;
 use crate::sim::settings::Settings;
-use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
+use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 

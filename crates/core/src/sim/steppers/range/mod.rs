@@ -14,6 +14,7 @@
 
 mod bonds;
 mod shocks;
+mod step_numbers;
 
 pub(super) use bonds::RangeMemory;
 
@@ -22,34 +23,12 @@ use glam::DVec2;
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
 use crate::contact::{InTouch, LookAhead, Numbering, Other};
-use crate::error::Error;
 use crate::number::Parts;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::solve_range;
-use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Approach, Model, SolveReport};
-use crate::world::{FrictionCone, Parameters, World};
-
-pub(super) const INFO: StepperInfo = StepperInfo {
-    solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
-    source: "bonds that cost the work C₀δc; shocks apart from loads",
-    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold debonding-distance solver \
-        ordering stop tolerance max-sweeps warm-start friction-model model-solves",
-    observables: &["bond_work", "bond_energy", "broken_bond_energy"],
-    // In the compressive cone the sweep needs the capture speed, which differs between contacts.
-    check: |parameters| match parameters.cone {
-        FrictionCone::Shifted => Ok(()),
-        cone => Err(Error::value("cone", cone, "shifted where stepper is range")),
-    },
-    takes_drives: true,
-    fracture_work: |world, physics, parameters| {
-        let distance = parameters.debonding_distance * world.mean_diameter;
-        fracture_work_of(world, physics, parameters, |force| force * distance)
-    },
-    ..StepperInfo::WHOLE
-};
 
 /// Pairs within the first of these many diameters that a step could close are contacts;
 /// a pair that is to meet within the step is one up to the second.
@@ -186,38 +165,6 @@ fn try_step<M: Model>(
     memory.shocks.shift(&mut stage.state.world);
     separate::<M>(stage.state);
     Ok(result)
-}
-
-/// The numbers of a step that its shocks and bonds hang on.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StepNumbers {
-    pub parameters: Parameters,
-    pub time_step_secs: f64,
-    /// δ_c, m.
-    pub debonding_distance: f64,
-    /// Gaps below this are none, m.
-    pub touch: f64,
-    /// g, m/s².
-    gravity_magnitude: f64,
-}
-
-impl StepNumbers {
-    /// Those of a step with these settings.
-    pub(super) fn of(world: &World, settings: &Settings) -> Self {
-        let parameters = settings.parameters;
-        Self {
-            parameters,
-            time_step_secs: parameters.time_step_secs,
-            debonding_distance: parameters.debonding_distance * world.mean_diameter,
-            touch: TOUCH_IN_DIAMETERS * world.mean_diameter,
-            gravity_magnitude: world.gravity.magnitude(),
-        }
-    }
-
-    /// ρ u, m/s, of a contact that closes with u, or 0 below the threshold.
-    pub(super) fn rebound(&self, closing: f64) -> f64 {
-        self.parameters.restitution_velocity(closing, self.gravity_magnitude)
-    }
 }
 
 /// Passes over the contacts after a step. One carries an overlap on by a layer of grains at the least.

@@ -11,12 +11,12 @@
 //! path that leads nowhere.
 
 use super::contact::{PAIRS, PathContact, PathStep, Shape};
+use super::point::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
 use super::system::{for_each_change, push_all};
-use super::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
 use crate::solver::kinematics::Model;
 use crate::solver::methods::stopping::SolveReport;
 use crate::solver::onlooker::{SolveProgress, is_ended};
-use crate::solver::problem::velocity_error;
+use crate::solver::problem::{natural_map, velocity_error};
 
 /// Least and largest share of the present mean product that a step aims at.
 const AIMS: [f64; 2] = [1e-6, 1.0];
@@ -66,6 +66,18 @@ const SOFTENING: f64 = 30.0;
 const HARDENING: f64 = 0.5;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
+    /// Takes a step along the path; the share of it that was taken, and the natural map where it leads.
+    pub(super) fn advance(&mut self) -> (f64, f64) {
+        let share = self.newton_step();
+        self.report.factorisations += 1;
+        self.take_impulses();
+        let left = natural_map(self.problem);
+        if left < self.best && self.is_bounded() {
+            self.keep(left);
+        }
+        (share, left)
+    }
+
     /// Takes a step; the share that was taken.
     pub(super) fn newton_step(&mut self) -> f64 {
         self.assemble();

@@ -4,6 +4,7 @@
 use super::*;
 use crate::contact::ContactLaw;
 use crate::solver::methods::random_problem::random_problem;
+use crate::solver::problem::natural_map;
 use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane, StopTest};
 
 const FRICTION: f64 = 0.6;

@@ -5,6 +5,7 @@ use rayon::ThreadPoolBuilder;
 
 use super::*;
 use crate::contact::levels;
+use crate::solver::methods::pass::sweep;
 use crate::solver::methods::random_problem::random_problem;
 use crate::solver::problem::residual;
 use crate::solver::settings::StopTest;
@@ -136,7 +137,7 @@ fn contacts_side_by_side_give_the_bits_of_one_after_the_other() {
 fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
     let start = problem::<SpinningPlane>(1, 40_960, 80_000, Shifted);
     let mut one_by_one = start.clone();
-    let expected = [(); 8].map(|()| nsgs::sweep::<SpinningPlane, true>(&mut one_by_one));
+    let expected = [(); 8].map(|()| sweep::<SpinningPlane, true>(&mut one_by_one));
     let (mut sums, mut residuals) = (Vec::new(), Vec::new());
     for several in [1, 2, 4] {
         let pool = ThreadPoolBuilder::new().num_threads(several).build().expect("threads");

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, along_normal, grains};
 use crate::contact::{Candidates, ContactList, Impulse};
 use crate::number::Parts;
-use crate::sim::steppers::range::StepNumbers;
+use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 use crate::world::World;
 

@@ -60,7 +60,7 @@ use glam::DVec2;
 use crate::contact::{Candidates, Contact, ContactList, Impulse};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::range::StepNumbers;
+use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{
     Model, Row, SolverSettings, StepProblem, StopTest, for_each_row, velocity_error,

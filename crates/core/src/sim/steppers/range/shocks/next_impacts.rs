@@ -7,7 +7,7 @@ use super::{
     grains,
 };
 use crate::contact::RelativeMotion;
-use crate::sim::steppers::range::StepNumbers;
+use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 
 impl Shocks {

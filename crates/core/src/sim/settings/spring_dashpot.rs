@@ -37,7 +37,7 @@
 use crate::error::{Error, Result};
 use crate::number::rounded_down;
 use crate::sim::pull::acceleration_of_springs;
-use crate::sim::steppers::effective_mass_of_mean;
+use crate::sim::settings::fracture_work::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
 /// Overlap that the weight of a whole pile makes, in d. Smaller: stiffer and dearer, h ∝ its root;

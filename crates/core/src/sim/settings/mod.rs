@@ -1,14 +1,21 @@
 //! All that a simulation can be told between two steps, and whether it goes together. Every simulation asks that, so no
 //! door leads around it.
 
+mod fracture_work;
+mod remedy;
+mod spring_dashpot;
+mod stepper;
+
+pub use fracture_work::FractureWork;
+pub use remedy::{REMEDIES, Remedies, Remedy, RemedyChanges};
+pub use spring_dashpot::SpringDashpot;
+pub(super) use spring_dashpot::stable_substeps;
+pub use stepper::{Stepper, StepperInfo};
+
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::setting::{About, Control, Group, Needs, Settable, Value};
-use crate::sim::remedies::{ROWS, Remedies};
-use crate::sim::state::SKIN_IN_DIAMETERS;
-use crate::sim::steppers::Stepper;
 use crate::solver::{FrictionModel, METHODS, SolverSettings};
 use crate::world::{FrictionCone, Gravity, Motion, Parameters, Periodic, Physics, World};
 
@@ -110,33 +117,6 @@ fn names_of<'a>(steppers: impl Iterator<Item = &'a Stepper>) -> Vec<&'static str
     steppers.map(|stepper| stepper.name()).collect()
 }
 
-/// The diameter that lengths are measured in is at most this many radii of the largest grain: the
-/// skin goes with it, and all that lie within the skin are candidates.
-const MOST_RADII_OF_DIAMETER: f64 = 200.0;
-
-/// How far a world's candidate search looks, where its lengths leave each disc few others to touch.
-pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
-    let diameter = world.mean_diameter;
-    if !(diameter > 0.0 && diameter.is_finite()) {
-        return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
-    }
-    let most = MOST_RADII_OF_DIAMETER * world.grains.radii.iter().copied().fold(0.0, f64::max);
-    if diameter > most {
-        let allowed = format!("at most {most} m, 100 times the diameter of the largest grain");
-        return Err(Error::value("mean_diameter", diameter, allowed));
-    }
-    let skin = SKIN_IN_DIAMETERS * diameter;
-    // Of much smaller discs, all within the tolerance would touch.
-    let least_radius = world.grains.radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = (0.1 * skin).min(least_radius);
-    if !(0.0..most).contains(&gap_tolerance) {
-        let allowed = format!("≥ 0 and below {most} m");
-        return Err(Error::value("gap_tolerance", gap_tolerance, allowed));
-    }
-    check_distances(world)?;
-    Ok(Reach { skin, gap_tolerance })
-}
-
 impl Settings {
     /// Checks every number against its range, and what goes with the stepper.
     ///
@@ -148,7 +128,7 @@ impl Settings {
         self.solver.validate()?;
         self.check_friction_model()?;
         self.remedies.validate_each()?;
-        for remedy in &ROWS {
+        for remedy in &REMEDIES {
             if remedy.is_on(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
                 let takers = names_of(remedy.taken_by.iter()).join(" and ");
                 let stepper = self.stepper;
@@ -247,9 +227,29 @@ impl Settings {
         if !self.stepper.reads("friction-model") {
             self.solver = self.solver.without_model();
         }
-        for remedy in ROWS.iter().filter(|remedy| !remedy.taken_by.contains(&self.stepper)) {
+        for remedy in REMEDIES.iter().filter(|remedy| !remedy.taken_by.contains(&self.stepper)) {
             remedy.leave_out(&mut self.remedies);
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steppers_read_settings_that_exist_and_every_setting_is_read_by_one() {
+        let remedies = |name: &str| REMEDIES.iter().any(|row| row.name == name);
+        let names: Vec<&str> = Settings::about().map(|about| about.name).collect();
+        for stepper in Stepper::ALL {
+            for name in stepper.info().settings.split(' ') {
+                assert!(names.contains(&name), "{stepper} reads {name}");
+            }
+        }
+        for name in names {
+            let read = Stepper::ALL.iter().any(|stepper| stepper.reads(name));
+            assert!(read || remedies(name) || name == "stepper", "{name}");
+        }
     }
 }

@@ -1,0 +1,15 @@
+//! Greys of the grains of a pile.
+
+use crate::world::Grain;
+
+/// Height of the layers that are told apart by their grey, in diameters.
+const LAYER_IN_DIAMETERS: f64 = 2.0;
+const LAYER_TONES: [u8; 2] = [222, 168];
+
+/// Gives grains greys by the layer they start in, so that a picture shows what moved where.
+pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
+    for grain in grains {
+        let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;
+        grain.tone = LAYER_TONES[layer.rem_euclid(LAYER_TONES.len() as i64) as usize];
+    }
+}

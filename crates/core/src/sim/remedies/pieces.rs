@@ -1,0 +1,24 @@
+//! The remedy `max-travel`: a step is cut into pieces in which no grain moves far.
+
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
+
+/// Most pieces of a step: more would be a step of another order than the one asked for.
+const MOST_PIECES: f64 = 100.0;
+
+/// Pieces of the next step: 1 unless grains are too fast for it.
+pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
+    let world = &state.world;
+    let longest = settings.remedies.max_travel * world.mean_diameter;
+    if longest == 0.0 {
+        return 1;
+    }
+    let time_step_secs = settings.parameters.time_step_secs;
+    let mut travel = state.fastest_in(time_step_secs) * time_step_secs
+        + state.largest_acceleration() * time_step_secs * time_step_secs;
+    if let Some(pull) = state.pull {
+        let position = world.grains.positions[pull.grain as usize];
+        travel += world.shortest(pull.target - position).length();
+    }
+    (travel / longest).ceil().clamp(1.0, MOST_PIECES) as u32
+}

@@ -1,0 +1,114 @@
+//! The registry of remedies for known failures. All are off in the paper's scheme. A remedy has a row in [`REMEDIES`] and
+//! a setting in [`Remedies`]; `sim::remedies` has the code.
+
+use crate::setting::{Group, Value, settings};
+use crate::sim::settings::stepper::Stepper;
+
+/// Longest travel of a grain in a piece of a step in the preset `robust`, in diameters: half of the travel that could
+/// pass a wall.
+const ROBUST_TRAVEL: f64 = 0.25;
+
+/// What there is to know of a remedy.
+#[derive(Clone, Copy, Debug)]
+pub struct Remedy {
+    /// The name of its setting.
+    pub name: &'static str,
+    /// The steppers that take it; others have their own ways, or none.
+    pub taken_by: &'static [Stepper],
+    /// Its setting in the preset `robust`, if it is part of that.
+    pub robust: Option<Value>,
+}
+
+impl Remedy {
+    /// True where it is asked for.
+    pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
+        remedies.get(self.name) != Remedies::default().get(self.name)
+    }
+
+    /// Asks for it no more.
+    pub(crate) fn leave_out(&self, remedies: &mut Remedies) {
+        if let Some(value) = Remedies::default().get(self.name) {
+            remedies.set(self.name, value);
+        }
+    }
+}
+
+settings! {
+    /// Remedies for known failures.
+    #[serde(default)]
+    pub struct Remedies, changes RemedyChanges, heading "Solver" {
+        push_out: bool = false, "push-out",
+            "Push overlap out by moving grains apart after each step, without giving them speed", {
+            control: shown(
+                "Push overlap out",
+                "Grains that overlap are moved apart after each step, without speed.",
+            ),
+        }
+        max_travel: f64 = 0.0, "max-travel" ("D"),
+            "Cut steps into pieces in which no grain moves further than this, in diameters, but \
+             into 100 at the most; 0 never does", {
+            allowed: "a finite number of diameters ≥ 0; 0 never cuts a step",
+            holds: |value| value >= 0.0 && value.is_finite(),
+        }
+        sequential_impacts: bool = false, "sequential-impacts",
+            "Have shocks run through touching grains one after the other, as in Newton's cradle; \
+             not with cohesion", {
+            control: shown(
+                "Shocks in sequence",
+                "Shocks run through touching grains one after the other, as in Newton's cradle; \
+                 not where Bond is above 0.",
+            ),
+        }
+        speculative: bool = false, "speculative",
+            "Let pairs that would close their gap within a step close it and no more, so that \
+             nothing tunnels; it costs bounces", {
+            control: shown(
+                "Look ahead",
+                "Pairs that would meet within a step close their gap and no more: nothing \
+                 tunnels, but they hardly bounce.",
+            ),
+        }
+    }
+}
+
+impl Remedies {
+    /// True where there are none.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// All remedies, in the order of their settings.
+pub const REMEDIES: [Remedy; 4] = {
+    const fn row(
+        name: &'static str,
+        taken_by: &'static [Stepper],
+        robust: Option<Value>,
+    ) -> Remedy {
+        Remedy { name, taken_by, robust }
+    }
+    const ON: Option<Value> = Some(Value::Switch(true));
+    const MOREAU: &[Stepper] = &[Stepper::Moreau];
+    [
+        row("push-out", MOREAU, ON),
+        row("max-travel", &[Stepper::Moreau, Stepper::Range], Some(Value::Number(ROBUST_TRAVEL))),
+        row("sequential-impacts", MOREAU, ON),
+        // Fast grains are cut into pieces of a step: looking ahead would cost them their bounce.
+        row("speculative", MOREAU, None),
+    ]
+};
+
+const _: () =
+    assert!(REMEDIES.len() == Remedies::ABOUT.len(), "each remedy has a row and a setting");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_row_is_about_the_setting_at_its_place() {
+        for (row, about) in REMEDIES.iter().zip(Remedies::ABOUT) {
+            assert_eq!(row.name, about.name);
+        }
+    }
+}

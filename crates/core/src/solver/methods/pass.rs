@@ -1,0 +1,185 @@
+//! Passes of Gauss–Seidel over all contacts of a problem, and whether the stopping test is met after them.
+
+use super::stopping::{SolveReport, is_settled};
+use super::sweep::ImpulseChange;
+use crate::solver::kinematics::Model;
+use crate::solver::problem::{
+    Bodies, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow, FrictionProjection,
+    StepProblem, projection_residual, squared_impulses, velocity_error, with_projection,
+};
+use crate::solver::settings::{FrictionModel, SolverSettings};
+
+/// One sweep of the model of friction that a problem was prepared for, and whether the stopping test is met
+/// after it.
+pub(super) fn sweep_of_model<M: Model>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+    backward: bool,
+) -> bool {
+    with_projection!(problem, M, P => tested::<M, P>(problem, settings, backward))
+}
+
+/// Sweeps up to so many times under the model of friction of a problem. True where the stopping test is met.
+pub(super) fn settles_in<M: Model>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+    sweeps: u32,
+    report: &mut SolveReport,
+) -> bool {
+    for _ in 0..sweeps {
+        report.sweeps += 1;
+        if sweep_of_model(problem, settings, false) {
+            report.converged = true;
+            break;
+        }
+    }
+    report.converged
+}
+
+/// One sweep under Coulomb's law, and whether the stopping test is met after it.
+pub(super) fn tested_sweep<M: Model>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+) -> bool {
+    if problem.law.all_rubs() {
+        tested::<M, CoulombFriction<true>>(problem, settings, false)
+    } else {
+        tested::<M, CoulombFriction<false>>(problem, settings, false)
+    }
+}
+
+fn tested<M: Model, P: FrictionProjection>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+    backward: bool,
+) -> bool {
+    let change = if settings.stop.judges_solutions() {
+        sweep_by::<M, P, false>(problem, backward)
+    } else {
+        sweep_by::<M, P, true>(problem, backward)
+    };
+    let mean_mass = problem.bodies.mean_mass;
+    let residual = |problem: &mut _| projection_residual::<M, P>(problem);
+    let of_velocities = |problem: &mut _| velocity_error(problem);
+    let squares = |problem: &mut _| squared_impulses(problem);
+    is_settled(problem, change, mean_mass, settings, squares, residual, of_velocities)
+}
+
+/// One pass over all contacts under Coulomb's law.
+pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> ImpulseChange {
+    if problem.law.all_rubs() {
+        sweep_by::<M, CoulombFriction<true>, MEASURE>(problem, false)
+    } else {
+        sweep_by::<M, CoulombFriction<false>, MEASURE>(problem, false)
+    }
+}
+
+/// One pass over all contacts, from the last to the first where it goes backward.
+pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
+    problem: &mut StepProblem<M>,
+    backward: bool,
+) -> ImpulseChange {
+    if P::TAKES_DRIVES && problem.is_driven() {
+        return pass::<M, P, MEASURE, true>(problem, backward);
+    }
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx") {
+        // SAFETY: the processor has just been asked.
+        return unsafe { pass_with_avx::<M, P, MEASURE>(problem, backward) };
+    }
+    pass::<M, P, MEASURE, false>(problem, backward)
+}
+
+/// The same operations in the same order, and so bitwise the same result, in the three-operand
+/// encoding, which saves the copies that the older one needs.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx")]
+fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
+    problem: &mut StepProblem<M>,
+    backward: bool,
+) -> ImpulseChange {
+    pass::<M, P, MEASURE, false>(problem, backward)
+}
+
+/// Where walls are driven (`problem::walls`), what a contact does to its wall is told to the wall at once, and each
+/// contact is solved for its wall's answer as for its grain's.
+#[inline(always)]
+fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool>(
+    problem: &mut StepProblem<M>,
+    backward: bool,
+) -> ImpulseChange {
+    let law = problem.law;
+    let lagged = &problem.friction.now;
+    let Bodies { now: bodies, .. } = &mut problem.bodies;
+    let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+    let walls = &mut problem.walls;
+    let first_pair = fixed.len();
+    let project = |number: usize| {
+        let lagged = if P::LAGS { lagged[number] } else { 0.0 };
+        move |trial| P::project::<M>(&law, lagged, trial)
+    };
+    let mut change = ImpulseChange::default();
+    let mut solve_fixed =
+        |number: usize, row: &mut FixedRow<M>, bodies: &mut [_], change: &mut _| {
+            if DRIVEN && let Some(known) = walls.driven_row(number).copied() {
+                let wall = &mut walls.driven[known.by.wall as usize];
+                let i = &mut bodies[row.i as usize];
+                let impulse = solve_driven(project(number), row, &known, i, wall);
+                ImpulseChange::add::<M, MEASURE>(change, row.effective_mass, impulse);
+            } else {
+                row.solve::<MEASURE>(bodies, change, project(number));
+            }
+        };
+    if backward {
+        for (number, row) in pairs.iter_mut().enumerate().rev() {
+            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+        }
+        for (number, row) in fixed.iter_mut().enumerate().rev() {
+            solve_fixed(number, row, bodies, &mut change);
+        }
+    } else {
+        for (number, row) in fixed.iter_mut().enumerate() {
+            solve_fixed(number, row, bodies, &mut change);
+        }
+        for (number, row) in pairs.iter_mut().enumerate() {
+            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+        }
+    }
+    if DRIVEN {
+        problem.tell_of_walls();
+    }
+    change
+}
+
+/// Solves the contact of a grain with a driven wall, and returns the change of (λ_n, λ_t). A normal impulse moves the
+/// wall along the tangent, too, where it goes askew, so the tangential velocity is read after it.
+fn solve_driven<M: Model>(
+    project: impl Fn([f64; 2]) -> [f64; 2],
+    row: &mut FixedRow<M>,
+    known: &DrivenRow,
+    i: &mut M::Body<f64>,
+    wall: &mut DrivenWall,
+) -> [f64; 2] {
+    let [along_normal, along_tangent] = known.by.along;
+    let answer = wall.response * row.effective_mass;
+    let [normal_velocity, _] = M::velocity(row.normal, i);
+    let closing = normal_velocity + known.still[0] - along_normal * wall.now;
+    let before = row.shifted_impulse;
+    let compliance = 1.0 + answer * along_normal * along_normal;
+    [row.shifted_impulse, _] = project([before - closing / compliance, 0.0]);
+    let normal = row.shifted_impulse - before;
+    M::push_single(i, row.normal, [normal, 0.0]);
+    wall.now -= answer * along_normal * normal;
+    if !M::FRICTION {
+        return [normal, 0.0];
+    }
+    let [_, tangential_velocity] = M::velocity(row.normal, i);
+    let slip = tangential_velocity - known.still[1] - along_tangent * wall.now;
+    let before = row.tangential_impulse;
+    let compliance = M::TANGENTIAL_COMPLIANCE + answer * along_tangent * along_tangent;
+    [_, row.tangential_impulse] = project([row.shifted_impulse, before - slip / compliance]);
+    let tangential = row.tangential_impulse - before;
+    M::push_single(i, row.normal, [0.0, tangential]);
+    wall.now -= answer * along_tangent * tangential;
+    [normal, tangential]
+}

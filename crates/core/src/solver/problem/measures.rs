@@ -1,0 +1,134 @@
+//! Measures of a solved step: residual, error of the velocities, contacts and works, in one pass over the rows.
+
+use super::residual::{Sums, natural_map};
+use super::row_velocities::{RowVelocities, sum_of_rows};
+use super::velocity_error::ErrorSums;
+use super::{Row, StepProblem};
+use crate::solver::kinematics::Model;
+use crate::solver::settings::FrictionModel;
+
+/// What one pass over the rows tells of a solved step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measures {
+    /// The common residual, dimensionless.
+    pub residual: f64,
+    /// The natural map of the model of friction that was solved, likewise; none under Coulomb's law, whose
+    /// it is already.
+    pub model_residual: Option<f64>,
+    /// How far the velocities are from those that Coulomb's law asks for, whatever was solved, m/s: an estimate of the root
+    /// mean square over the grains that touch something, weighted with mass ([`VelocityError`](super::VelocityError)).
+    pub velocity_error: f64,
+    /// Contacts with P_n > 0.
+    pub compressive_contacts: u32,
+    /// Contacts with P_n < 0.
+    pub tensile_contacts: u32,
+    /// Work of the normal impulses, J.
+    pub normal_work: f64,
+    /// Work of the tangential impulses, J.
+    pub tangential_work: f64,
+    /// Of both, the work of surfaces that move, J.
+    pub wall_work: f64,
+    /// Beside both, what images that slide do to the grains that touch them, J.
+    pub border_work: f64,
+}
+
+impl Measures {
+    /// Tells of a step that was solved under Coulomb's law what is told of others of its run, which were solved
+    /// under a model of friction: its common residual.
+    pub(crate) fn measure_as_a_model(&mut self) {
+        self.model_residual = self.model_residual.or(Some(self.residual));
+    }
+
+    /// Counts other rows of the same problem.
+    fn add_rows(&mut self, rows: Self) {
+        self.compressive_contacts += rows.compressive_contacts;
+        self.tensile_contacts += rows.tensile_contacts;
+        self.normal_work += rows.normal_work;
+        self.tangential_work += rows.tangential_work;
+        self.border_work += rows.border_work;
+    }
+
+    /// Counts another piece of the same step; the contacts are those at its end.
+    pub fn add(&mut self, piece: Self) {
+        let Self { residual, model_residual, velocity_error, .. } = piece;
+        let Self { compressive_contacts, tensile_contacts, .. } = piece;
+        let Self { normal_work, tangential_work, wall_work, border_work, .. } = piece;
+        self.residual = worst(self.residual, residual);
+        self.model_residual = worst_of(self.model_residual, model_residual);
+        self.velocity_error = worst(self.velocity_error, velocity_error);
+        self.compressive_contacts = compressive_contacts;
+        self.tensile_contacts = tensile_contacts;
+        self.normal_work += normal_work;
+        self.tangential_work += tangential_work;
+        self.wall_work += wall_work;
+        self.border_work += border_work;
+    }
+}
+
+/// The residual of the model of friction of a problem; none under Coulomb's law.
+fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
+    match problem.friction.model {
+        FrictionModel::Coulomb => None,
+        // Without friction all models are one.
+        _ if !M::FRICTION => Some(common_residual),
+        _ => Some(natural_map(problem)),
+    }
+}
+
+fn worst_of(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(worst(one, other)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// The larger of two residuals or other measures of what went wrong: not a number where one is none.
+pub fn worst(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
+}
+
+/// Residual, contact counts and works in one pass.
+///
+/// Work: from v^n = v^{n−1} + M⁻¹(ΔtF + HP) the kinetic energy changes by
+/// ½(v^n + v^{n−1})·(ΔtF + HP), so a contact impulse does the work P·½(u^n + u^{n−1}) with u its
+/// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
+/// left undone. Where j is an image that slides, u is relative to that, and P·(what it slides by) is the border's work.
+// Compiled once, in this crate.
+#[inline(never)]
+pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
+    type Sum = (Sums, ErrorSums, Measures);
+    let visit = |(sums, of_law, measures): &mut Sum,
+                 (number, row): (usize, &Row<_>),
+                 motion: RowVelocities| {
+        sums.add_error(problem, number, row, &motion);
+        of_law.add_by_law(problem, number, row, &motion);
+        let [normal, tangential] = problem.reduced_impulse(number, row);
+        let half_mass = 0.5 * row.effective_mass;
+        measures.compressive_contacts += u32::from(normal > 0.0);
+        measures.tensile_contacts += u32::from(normal < 0.0);
+        measures.normal_work += half_mass * normal * (motion.now[0] + motion.before[0]);
+        if M::FRICTION {
+            measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
+        }
+        if M::SLIDES {
+            let [along_normal, along_tangent] = M::slide_along(row.normal);
+            let work = normal * along_normal + tangential * along_tangent;
+            measures.border_work += row.effective_mass * work;
+        }
+    };
+    let join = |all: &mut Sum, (sums, of_law, measures)| {
+        all.0.add_all(sums);
+        all.1.add_all(of_law);
+        all.2.add_rows(measures);
+    };
+    let (sums, of_law, mut measures) = sum_of_rows(problem, visit, join);
+    if problem.has_moving_walls() {
+        let [whole, tangential_part] = problem.surface_works();
+        measures.wall_work = whole;
+        measures.tangential_work += tangential_part;
+    }
+    let residual = sums.residual::<M>(problem);
+    let model_residual = model_residual(problem, residual);
+    let velocity_error = of_law.error(problem);
+    Measures { residual, model_residual, velocity_error, ..measures }
+}

@@ -1,0 +1,82 @@
+//! The rows of a problem with their relative velocities, visited in order, and sums over them.
+
+use std::ops::Range;
+
+use super::{Row, StepProblem};
+use crate::solver::kinematics::Model;
+use crate::threads;
+
+/// Relative (normal, tangential) velocities of one contact, m/s: along the tangent relative to a surface that
+/// moves.
+pub struct RowVelocities {
+    /// At the end of the step.
+    pub now: [f64; 2],
+    /// At its beginning.
+    pub before: [f64; 2],
+    /// At the end if no contact acted.
+    pub free: [f64; 2],
+}
+
+/// Visits the rows with their numbers and motions.
+pub fn for_each_row<M: Model>(
+    problem: &StepProblem<M>,
+    visit: impl FnMut(usize, &Row<M>, RowVelocities),
+) {
+    for_each_row_of(problem, 0..problem.rows.len(), visit);
+}
+
+/// Adds up what rows come to, in stretches of one length: `visit` adds a row to the sum of its stretch, `join` that of
+/// the next stretch to those before.
+pub(super) fn sum_of_rows<M: Model, S: Default + Send>(
+    problem: &StepProblem<M>,
+    visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,
+    join: impl Fn(&mut S, S),
+) -> S {
+    let of_stretch = |stretch: Range<usize>| {
+        let mut sum = S::default();
+        for_each_row_of(problem, stretch, |number, row, motion| {
+            visit(&mut sum, (number, row), motion);
+        });
+        sum
+    };
+    let mut all = S::default();
+    threads::add_up(problem.rows.len(), of_stretch, |sum| join(&mut all, sum));
+    all
+}
+
+#[inline(always)]
+fn for_each_row_of<M: Model>(
+    problem: &StepProblem<M>,
+    rows: Range<usize>,
+    mut visit: impl FnMut(usize, &Row<M>, RowVelocities),
+) {
+    let (bodies, fixed) = (&problem.bodies, problem.rows.fixed.len());
+    for number in rows.start..rows.end.min(fixed) {
+        let row = &problem.rows.fixed[number];
+        let [now, before, free] =
+            [&bodies.now, &bodies.before, &bodies.free].map(|bodies| row.velocity(bodies));
+        // Without contacts a driven wall would go otherwise, too.
+        let free = problem.free_part(number, row, free).unwrap_or(free);
+        visit(number, row, RowVelocities { now, before, free });
+    }
+    for number in rows.start.max(fixed)..rows.end {
+        let row = &problem.rows.pairs[number - fixed];
+        let [now, before, free] =
+            [&bodies.now, &bodies.before, &bodies.free].map(|bodies| row.velocity(bodies));
+        visit(number, row, RowVelocities { now, before, free });
+    }
+}
+
+/// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
+pub fn relative_velocities<M: Model>(
+    problem: &StepProblem<M>,
+    bodies: &[M::Body<f64>],
+    speeds: &mut Vec<f64>,
+) {
+    speeds.clear();
+    speeds.reserve(problem.rows.len());
+    problem.for_each_velocity(bodies, |_, [normal, _]| speeds.push(normal));
+    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.walls.speeds) {
+        *speed -= wall_speed;
+    }
+}
