@@ -30,7 +30,7 @@ impl ProblemVisitor for Solve {
 
 fn main() -> Result<()> {
     let mut scene = built_in("pile")?;
-    // Without it many steps have no solution (docs/speed-against-accuracy.md).
+    // Without it many steps have no solution (docs/accuracy-and-cost.md).
     scene.parameters.restitution_threshold = 2.0;
     let mut simulation = scene.simulation()?;
     simulation.take_steps(50)?;

@@ -44,7 +44,7 @@ const VERSION: &str = env!("SLUMP_VERSION");
 
 /// The programs of a page of the book.
 #[cfg(doctest)]
-#[doc = include_str!("../docs/rust.md")]
+#[doc = include_str!("../docs/python-and-rust.md")]
 struct BookOnRust;
 
 /// A clock that a page has, too.

@@ -13,7 +13,7 @@ from command_line import ROOT
 import slump
 
 EXAMPLES = sorted(path for path in (ROOT / "python" / "examples").glob("*.py") if "def main" in path.read_text())
-PAGES = [ROOT / page for page in ("README.md", "docs/python.md", "docs/recordings.md", "python/README.md")]
+PAGES = [ROOT / page for page in ("README.md", "docs/python-and-rust.md", "docs/runs.md", "python/README.md")]
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)

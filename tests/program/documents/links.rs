@@ -24,6 +24,39 @@ fn anchor(heading: &str) -> String {
     kept.map(|it| if it == ' ' { '-' } else { it }).collect()
 }
 
+/// A number that a comment below a table or paragraph names as checked against a report:
+/// `<!-- checked: REPORT.json 0.252 /pointer, … -->`, or `<!-- checked: REPORT.md words #heading, … -->`.
+struct CheckedNumber<'a> {
+    /// The table or paragraph above the comment.
+    block: &'a str,
+    report: &'a str,
+    number: &'a str,
+    pointer: &'a str,
+}
+
+fn checked_numbers(text: &str) -> Vec<CheckedNumber<'_>> {
+    let mut found = Vec::new();
+    for (at, _) in text.match_indices("<!-- checked: ") {
+        let comment = &text[at + "<!-- checked: ".len()..];
+        let comment = comment.split("-->").next().unwrap_or_default().trim();
+        let (report, numbers) = comment.split_once(' ').unwrap_or((comment, ""));
+        let above = text[..at].trim_end();
+        let block = &above[above.rfind("\n\n").map_or(0, |start| start + 2)..];
+        for entry in numbers.split(", ") {
+            let (number, pointer) = entry.trim().rsplit_once(' ').unwrap_or((entry, ""));
+            found.push(CheckedNumber { block, report, number, pointer });
+        }
+    }
+    found
+}
+
+/// The part of a block that a reader sees.
+pub(super) fn without_comments(block: &str) -> String {
+    let mut parts = block.split("<!--");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| text + part.split_once("-->").map_or("", |(_, after)| after))
+}
+
 /// True where a number is printed as a report has it, to the digits that are shown: `−.25`, `+0.3`, `49`, `1.2e-3`.
 fn is_printed(text: &str, value: &Value) -> bool {
     let Some(number) = value.as_f64() else { return value.as_str() == Some(text) };
@@ -50,6 +83,18 @@ fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
     for page in pages() {
         let text = read(&page);
         let folder = page.parent().expect("a folder");
+        for CheckedNumber { block, report, number, pointer } in checked_numbers(&text) {
+            numbers += 1;
+            let path = folder.join(report);
+            let is_right = match pointer.strip_prefix('#') {
+                Some(heading) => section(&read(&path), heading).contains(number),
+                None => json(&path).pointer(pointer).is_some_and(|value| is_printed(number, value)),
+            };
+            if !is_right || !without_comments(block).contains(number) {
+                let page = page.strip_prefix(root()).expect("a page of ours").display();
+                wrong.push(format!("{page}: {number} is not that of {report} {pointer}"));
+            }
+        }
         for (said, target) in links(&text) {
             if target.contains("://") {
                 continue;
@@ -82,7 +127,7 @@ fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(numbers > 20, "{numbers} numbers of reports");
+    assert!(numbers > 100, "{numbers} numbers of reports");
 }
 
 /// Width of a page, pixels.
@@ -101,6 +146,16 @@ fn every_picture_fits_a_page_is_shown_and_says_its_result() {
         assert!(!said.is_empty(), "no page shows {name}");
         assert!(said.iter().all(|said| said.split(' ').count() > 10), "{name}: {said:?}");
     }
+}
+
+#[test]
+fn a_comment_names_the_numbers_of_the_block_above_it() {
+    let text = "One.\n\n| a | 0.5 |\n| b | 2 |\n<!-- checked: r.json 0.5 /a, 2 /b/0 -->\n\nTwo.";
+    let found = checked_numbers(text);
+    assert_eq!(found.len(), 2);
+    assert_eq!((found[1].report, found[1].number, found[1].pointer), ("r.json", "2", "/b/0"));
+    assert_eq!(found[1].block, "| a | 0.5 |\n| b | 2 |");
+    assert_eq!(without_comments("a <!-- 3 --> b"), "a  b");
 }
 
 #[test]

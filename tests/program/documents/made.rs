@@ -273,7 +273,7 @@ fn verdicts() -> String {
 
 #[test]
 fn every_alarm_is_explained() {
-    let page = read(root().join("docs/warnings.md"));
+    let page = read(root().join("docs/runs.md"));
     for alarm in AlarmKind::ALL {
         assert!(page.contains(&format!("\n| `{}` |", alarm.name())), "{alarm} has no row");
     }

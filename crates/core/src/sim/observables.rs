@@ -29,7 +29,7 @@ pub struct Observables {
     /// fixed amount of work and tests nothing. What its step is worth, `residual` tells.
     pub converged: bool,
     /// True where a step that did not converge had stalled: its residual had stopped falling, so that
-    /// more sweeps are of no use. As a rule it has no solution (`docs/solved-steps.md`).
+    /// more sweeps are of no use. As a rule it has no solution (`docs/accuracy-and-cost.md`).
     #[serde(default)]
     pub stalled: bool,
     /// The common residual (`solver::residual`), dimensionless. For a scheme: that of the step's

@@ -53,7 +53,7 @@ pub struct Row<M: Model> {
 
 /// A contact with a fixed body: exactly one cache line in the plane.
 ///
-/// A structure of arrays took 1.1 to 1.2 times as long (`docs/speed.md`).
+/// A structure of arrays took 1.1 to 1.2 times as long (`assets/reports/parts.md`).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct FixedRow<M: Model> {
