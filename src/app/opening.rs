@@ -20,7 +20,7 @@ use crate::config::{Config, SavedState, SceneSource};
 use crate::error::Result;
 use crate::live::{
     Command, LiveStart, LoadingProgress, Preview, RunHistory, StartSource, Tell, WorldHistory,
-    as_json, source_to_bytes,
+    as_json, to_bytes,
 };
 use crate::scene::{Scene, Settling};
 use crate::sim::{GrainView, Simulation, Snapshot, Tally};
@@ -91,7 +91,7 @@ impl StartSource for Opening {
     }
 
     fn to_bytes(&self) -> Result<Vec<u8>> {
-        source_to_bytes(self)
+        to_bytes(self)
     }
 }
 
