@@ -7,8 +7,8 @@ use std::sync::{Arc, PoisonError};
 use image::RgbaImage;
 
 use super::canvas::Canvas;
+use super::file_names::{STATE_ENDING, free_path, stem};
 use super::opening::TakenRun;
-use super::setting_control::written;
 use super::state::AppState;
 use super::work::{MaySend, Work};
 use crate::config::SavedState;
@@ -16,8 +16,7 @@ use crate::error::{Error, Result};
 use crate::live::Curve;
 use crate::output::{Texts, check_writable, write_file};
 use crate::render::{Camera, Renderer, RendererChoice, Style, WorldPanel, draw_scene, draw_worlds};
-use crate::sim::{Observables, Settings, Snapshot};
-use crate::world::Parameters;
+use crate::sim::{Observables, Snapshot};
 
 /// A world of a picture.
 pub(crate) struct PicturedWorld {
@@ -55,22 +54,6 @@ impl ScenePicture {
         let panels: Vec<_> = panels.collect();
         draw_worlds(renderer, &panels, style, camera, *columns, *size)
     }
-}
-
-/// Ending of files that runs are saved to.
-pub(crate) const STATE_ENDING: &str = "slump";
-
-/// How the names of files about a moment of a scene begin, with the numbers of its world where there is one alone.
-pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String {
-    let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
-    let which = match settings {
-        [alone] => {
-            let Parameters { bond, time_step_secs, .. } = alone.parameters;
-            format!("bond{}-dt{}", written(bond), written(time_step_secs))
-        }
-        all => format!("{}worlds", all.len()),
-    };
-    format!("slump-{name}-{which}-{time_secs:.4}s")
 }
 
 /// What pictures are drawn with, opened by the first that needs it: opening a device takes longer than a picture.
@@ -173,17 +156,6 @@ fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     write_file(path, text.as_bytes())
 }
 
-/// `stem.ending` in `folder`, numbered where there is such a file already.
-pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
-    let numbered = |number: u32| folder.join(format!("{stem}-{number}.{ending}"));
-    let plain = folder.join(format!("{stem}.{ending}"));
-    if !plain.exists() {
-        return plain;
-    }
-    // Ends: no folder holds that many files.
-    (2..).map(numbered).find(|path| !path.exists()).unwrap_or(plain)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,21 +188,5 @@ mod tests {
         std::io::Read::read_to_string(&mut reader, &mut seen).unwrap();
         assert_eq!(seen, "before", "whoever reads the old file goes on reading it");
         assert!(std::fs::read_to_string(&path).unwrap().starts_with("world,step"));
-    }
-
-    #[test]
-    fn names_say_scene_numbers_and_time() {
-        let settings = Settings::default().with_bond(20.0).over(1e-4);
-        assert_eq!(stem("a b.toml", &[settings], 0.25), "slump-a-b-toml-bond20-dt1e-4-0.2500s");
-        assert_eq!(stem("pile", &[settings; 3], 1.0), "slump-pile-3worlds-1.0000s");
-    }
-
-    #[test]
-    fn files_do_not_replace_each_other() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["a.png", "a-2.png"] {
-            std::fs::write(folder.path().join(name), "").unwrap();
-        }
-        assert_eq!(free_path(folder.path(), "a", "png"), folder.path().join("a-3.png"));
     }
 }

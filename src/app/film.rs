@@ -4,7 +4,8 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use super::export::{ScenePicture, free_path};
+use super::export::ScenePicture;
+use super::file_names::free_path;
 use super::opening::TakenRun;
 use super::work::Reporter;
 use crate::error::{Error, Result};

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::IN_BROWSER;
 use super::opening::Opening;
-use super::panels::Page;
+use super::page::Page;
 use super::preferences::Preferences;
 use super::state::AppState;
 use super::theme;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data_export::DataChoices;
 use super::lessons::LessonPlace;
-use super::panels::Page;
+use super::page::Page;
 use super::plots::ChosenPlot;
 use crate::config::Config;
 #[cfg(feature = "window")]
@@ -145,15 +145,6 @@ impl StoredWindow {
     pub(in crate::app) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
         Self { preferences: preferences.clone(), layout: context.memory(Clone::clone) }
     }
-}
-
-/// The program's folder in the user's folder: `%APPDATA%` on Windows, elsewhere the one that a variable of the environment
-/// names or else the one that lies in their home.
-pub(super) fn user_folder(variable: &str, in_home: &str) -> Option<PathBuf> {
-    let variable = if cfg!(windows) { "APPDATA" } else { variable };
-    let named = std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
-    let home = || std::env::home_dir().map(|home| home.join(in_home));
-    Some(named.or_else(home)?.join("slump"))
 }
 
 #[cfg(test)]

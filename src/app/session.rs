@@ -10,7 +10,8 @@ use std::sync::mpsc::channel;
 use serde::{Deserialize, Serialize};
 
 use super::camera::SceneCamera;
-use super::export::{free_path, not_finite, write_state};
+use super::export::{not_finite, write_state};
+use super::file_names::{SESSION_ENDING, free_path};
 use super::panels::see::file_stem;
 use super::preferences::{Preferences, StoredWindow};
 use super::state::AppState;
@@ -27,9 +28,6 @@ const SEAL: Seal = Seal {
     of: "",
     form: "a session that the window saved",
 };
-
-/// Ending of files that sessions are saved to.
-pub(crate) const SESSION_ENDING: &str = "session";
 
 /// How a window is arranged.
 #[derive(Clone, Debug, Serialize, Deserialize)]

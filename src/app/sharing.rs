@@ -13,8 +13,9 @@ use std::sync::OnceLock;
 
 use egui::Context;
 
+use super::notice::Notice;
 use super::opening::TakenRun;
-use super::state::{AppState, Notice};
+use super::state::AppState;
 use super::work::Work;
 use crate::config::{
     Config, Provenance, SceneSource, asked_time_secs, joined, words_of, words_up_to,

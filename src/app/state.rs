@@ -4,14 +4,15 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
-use egui::{Color32, Rect, Ui};
+use egui::Rect;
 
 use super::camera::SceneCamera;
 use super::data_export::DataPanel;
 use super::ensemble::Ensemble;
 use super::export::Printers;
+use super::file_names::is_saved_run;
 use super::film::FilmFormat;
-use super::opening::is_saved_run;
+use super::notice::Notice;
 use super::painting::LegendCache;
 use super::panels::distributions::Distributions;
 use super::panels::gallery::Gallery;
@@ -21,11 +22,8 @@ use super::panels::trust::RunBudget;
 use super::panels::{Grabbing, GrainRef};
 use super::preferences::Preferences;
 use super::session::arrangement_of;
-use super::theme;
 use super::work::Work;
-use crate::Instant;
 use crate::config::Config;
-use crate::error::Result;
 use crate::live::{Command, Controls, Live, LiveFrame, WorldFrame};
 use crate::sim::Settings;
 
@@ -264,8 +262,7 @@ impl AppState {
     /// What the status bar has to say, and for how long yet, s.
     pub fn notice(&self) -> Option<(&Notice, f32)> {
         let notice = self.shown.notice.as_ref()?;
-        let left_secs = NOTICE_SECS - notice.since.elapsed().as_secs_f32();
-        (left_secs > 0.0).then_some((notice, left_secs))
+        Some((notice, notice.left_secs()?))
     }
 
     /// Notes where a control lies.
@@ -289,36 +286,5 @@ impl AppState {
         let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
         let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
         self.live.send(Command::Seek(time_secs.max(0.0)));
-    }
-}
-
-/// How long a notice stays, s.
-const NOTICE_SECS: f32 = 8.0;
-
-/// A sentence for the status bar.
-#[derive(Clone, Debug)]
-pub struct Notice {
-    /// The sentence.
-    pub text: String,
-    failure: bool,
-    since: Instant,
-}
-
-impl Notice {
-    /// One that begins now.
-    pub(super) fn new(text: impl Into<String>, failure: bool) -> Self {
-        Self { text: text.into(), failure, since: Instant::now() }
-    }
-
-    /// Of what became of something, which begins now.
-    fn of(outcome: Result<String>) -> Self {
-        let failure = outcome.is_err();
-        Self::new(outcome.unwrap_or_else(|error| error.to_string()), failure)
-    }
-
-    /// Its colour.
-    pub(super) fn colour(&self, ui: &Ui) -> Color32 {
-        let dark = ui.visuals().dark_mode;
-        if self.failure { theme::warning(dark) } else { theme::good(dark) }
     }
 }

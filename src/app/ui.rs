@@ -3,8 +3,9 @@
 use egui::{CentralPanel, Context, Event, Frame, Key, Margin, Modifiers, Panel, ScrollArea, Ui};
 
 use super::opening::Opening;
+use super::page::Page;
 use super::painting::fill;
-use super::panels::{Page, front, grain, help, plots, scene, see, status, trust};
+use super::panels::{front, grain, help, plots, scene, see, status, trust};
 use super::sharing::{RunLink, is_link};
 use super::state::AppState;
 use super::work::progress_bar;

@@ -10,8 +10,8 @@ use std::sync::Arc;
 mod pool;
 mod runs;
 
-use super::preferences::user_folder;
 use super::state::AppState;
+use super::user_folder::user_folder;
 use crate::live::LiveStart;
 use crate::scene::NewPile;
 use crate::sim::Settings;

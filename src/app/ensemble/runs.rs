@@ -131,7 +131,7 @@ pub(super) fn scene_of(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::opening::start;
+    use crate::app::scene_start::start;
 
     fn run(slumps: [f64; 3]) -> SlumpSeries {
         [0.0, 0.5, 1.0].into_iter().zip(slumps).map(|(time, slump)| [time, slump]).collect()

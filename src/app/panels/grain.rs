@@ -2,7 +2,7 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::Page;
+use crate::app::page::Page;
 use crate::app::state::AppState;
 use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;

@@ -3,7 +3,8 @@
 use egui::{RichText, Ui};
 
 use crate::app::IN_BROWSER;
-use crate::app::export::{free_path, write_table};
+use crate::app::export::write_table;
+use crate::app::file_names::free_path;
 use crate::app::plots::{PlotData, WorldCurve, draw};
 use crate::app::state::AppState;
 use crate::app::theme;

@@ -2,11 +2,11 @@
 
 use egui::{Align, Button, RichText, Ui};
 
-use super::compare::title_among;
 use super::gallery;
 use super::grain::compact;
 use crate::app::sharing::CHANGED;
 use crate::app::state::AppState;
+use crate::app::titles::title_among;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES};

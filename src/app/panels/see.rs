@@ -7,7 +7,8 @@ use glam::DVec2;
 
 use super::scene::{columns, shared_style, view};
 use crate::app::IN_BROWSER;
-use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
+use crate::app::export::{PicturedWorld, ScenePicture};
+use crate::app::file_names::{free_path, stem};
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
 use crate::app::work::Work;

@@ -2,8 +2,9 @@
 
 use egui::{Align, Label, Layout, Rect, RichText, Ui};
 
-use super::{Page, trust};
+use super::trust;
 use crate::app::budget::FAST;
+use crate::app::page::Page;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::{WorldAlarm, WorldFrame};
