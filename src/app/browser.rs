@@ -6,10 +6,10 @@ use egui::Context;
 use egui_wgpu::CallbackResources;
 
 use super::file_names::refused_file;
+use super::link::{RunLink, set_link_start};
 use super::opening::{Opening, opening_of};
 use super::painting::TargetFormat;
 use super::preferences::{Preferences, StoredWindow};
-use super::sharing::{RunLink, set_link_start};
 use super::state::AppState;
 use super::{theme, told};
 use crate::error::Result;

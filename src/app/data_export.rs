@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::notice::Notice;
-use super::opening::TakenRun;
+use super::watched_run::TakenRun;
 use super::work::{Reporter, Work};
 use crate::config::run_facts;
 use crate::data::{

@@ -24,12 +24,6 @@ impl Notice {
         Self { text: text.into(), failure, since: Instant::now() }
     }
 
-    /// Of what became of something, which begins now.
-    pub(super) fn of(outcome: Result<String>) -> Self {
-        let failure = outcome.is_err();
-        Self::new(outcome.unwrap_or_else(|error| error.to_string()), failure)
-    }
-
     /// How long it stays yet, s; nothing once it is over.
     pub(super) fn left_secs(&self) -> Option<f32> {
         let left_secs = NOTICE_SECS - self.since.elapsed().as_secs_f32();
@@ -40,5 +34,13 @@ impl Notice {
     pub(super) fn colour(&self, ui: &Ui) -> Color32 {
         let dark = ui.visuals().dark_mode;
         if self.failure { theme::warning(dark) } else { theme::good(dark) }
+    }
+}
+
+impl From<Result<String>> for Notice {
+    /// The outcome of something, which begins now.
+    fn from(outcome: Result<String>) -> Self {
+        let failure = outcome.is_err();
+        Self::new(outcome.unwrap_or_else(|error| error.to_string()), failure)
     }
 }

@@ -1,25 +1,18 @@
 //! Opening: from what a user asks for to a start, which is made where the run is computed.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
 
-use egui::Context;
 use serde::{Deserialize, Serialize};
 
-use super::IN_BROWSER;
-use super::file_names::{is_saved_run, is_session, refused_file};
-use super::lessons::LESSONS;
+use super::file_names::{is_saved_run, is_session};
+use super::lessons::lesson;
+use super::link::RunLink;
 use super::scene_start::{start, start_of_run};
 use super::session::open_session;
 use super::settling_progress::SettlingProgress;
-use super::sharing::RunLink;
-use super::state::AppState;
 use crate::config::{Config, SavedState, SceneSource};
 use crate::error::Result;
-use crate::live::{
-    Command, LiveStart, RunHistory, StartSource, Tell, WorldHistory, as_json, to_bytes,
-};
+use crate::live::{LiveStart, RunHistory, StartSource, Tell, as_json, to_bytes};
 use crate::scene::Scene;
 
 /// What a start is made from. It is data, so that it can be sent to where the run is computed.
@@ -58,7 +51,7 @@ impl StartSource for Opening {
                 start(&scene, *config)
             }
             Self::Lesson(at) => {
-                let lesson = &LESSONS[at.min(LESSONS.len() - 1)];
+                let lesson = lesson(at);
                 let (config, scene) = lesson.scene()?;
                 let worlds = (lesson.worlds)(scene.settings());
                 let start = start(&scene, config)?;
@@ -91,66 +84,10 @@ impl StartSource for Opening {
     }
 }
 
-/// A run that is to be written down.
-pub(crate) struct TakenRun {
-    pub start: Arc<LiveStart>,
-    pub world: WorldHistory,
-}
-
-impl AppState {
-    /// Opens a scene.
-    pub fn load(&mut self, config: Config) {
-        self.config = config.clone();
-        self.open(Opening::Scene(Box::new(config)));
-    }
-
-    /// Opens a saved run, to go on with it.
-    pub fn load_run(&mut self, state: SavedState) {
-        self.open(Opening::Run(Box::new(state)));
-    }
-
-    /// Opens the file of a saved run or of a session, to go on with it.
-    pub fn load_saved(&mut self, path: &Path) {
-        self.exports.data.saved_run = path.display().to_string();
-        self.open(Opening::File(path.to_owned()));
-    }
-
-    /// Has a start made where the run is computed. Other than for a lesson, lessons are left.
-    pub(crate) fn open(&mut self, opening: Opening) {
-        if !matches!(opening, Opening::Lesson(_)) {
-            self.leave_lessons();
-        }
-        self.live.send(Command::Load(Box::new(opening)));
-    }
-
-    /// Asks for a world's run. It comes between two steps; nothing comes where that world is gone.
-    pub(crate) fn take_run(&mut self, world: usize) -> Receiver<TakenRun> {
-        let (sender, receiver) = channel();
-        let hand_on = move |start, world| {
-            // Whoever asked may have gone.
-            let _ = sender.send(TakenRun { start, world });
-        };
-        self.live.send(Command::Take(world, Box::new(hand_on)));
-        receiver
-    }
-}
-
 /// The scene, shown and with progress told where a new pile has to settle first.
 fn settled(config: &Config, tell: Tell<'_>) -> Result<Scene> {
     let mut making = SettlingProgress::new();
     config.scene(|settling| tell(making.look(&settling)))
-}
-
-/// Opens the last file that was dropped in this frame. A page has to wait for its content.
-pub(super) fn take_dropped_files(context: &Context, state: &mut AppState) {
-    let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
-    let Some(file) = dropped.filter(|_| !IN_BROWSER) else { return };
-    let path = file.path();
-    match opening_of(path) {
-        Some(Opening::File(path)) => state.load_saved(&path),
-        Some(opening) => state.open(opening),
-        None => state.warn(refused_file(path)),
-    }
 }
 
 /// What opens a file, by its name.

@@ -3,9 +3,8 @@
 use egui::{Button, RichText, Ui};
 
 use crate::app::budget::PAPER;
-use crate::app::state::AppState;
 use crate::app::theme;
-use crate::app::titles::title_among;
+use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
 use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
@@ -15,30 +14,30 @@ use crate::world::FrictionCone;
 /// The paper's time steps, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 /// Most worlds side by side.
-pub(crate) const MOST_WORLDS: usize = 6;
+const MOST_WORLDS: usize = 6;
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.label(
-        RichText::new("Worlds from one initial state, kept at the same simulated time.")
+        RichText::new("Worlds from one initial context, kept at the same simulated time.")
             .small()
             .weak(),
     );
-    presets(ui, state);
-    let before: Vec<_> = state.wanted.iter().map(|wanted| wanted.settings).collect();
+    presets(ui, run);
+    let before: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
     if before.is_empty() {
         return;
     }
-    let (mut all, compares) = (before.clone(), state.compares());
-    let rows = (0..all.len()).filter(|_| compares).map(|index| row(ui, state, index));
+    let (mut all, compares) = (before.clone(), run.compares());
+    let rows = (0..all.len()).filter(|_| compares).map(|index| row(ui, run, index));
     let rows: Vec<_> = rows.collect();
     ui.horizontal(|ui| {
         let add = ui.add_enabled(all.len() < MOST_WORLDS, Button::new("Add"));
         if add.on_hover_text("One more like the selected one.").clicked() {
-            all.push(all[state.selected]);
+            all.push(all[run.selected]);
         }
         let hint = "Go on with the selected world alone, from the start.";
         if compares && ui.button("One world").on_hover_text(hint).clicked() {
-            all = vec![all[state.selected]];
+            all = vec![all[run.selected]];
         }
     });
     let removed = rows.into_iter().position(|is_removed| is_removed);
@@ -46,7 +45,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         all.remove(index);
     }
     if all != before {
-        state.live.send(Command::Compare(all));
+        run.live.send(Command::Compare(all));
     }
 }
 
@@ -112,7 +111,7 @@ const LINE_UPS: [LineUp; 7] = [
     },
     LineUp {
         name: "Steppers",
-        hint: "As many ways to step as there is room for, from the same state.",
+        hint: "As many ways to step as there is room for, from the same context.",
         worlds: |base| {
             let by = |&stepper: &Stepper| stepped(base, stepper);
             Stepper::ALL.iter().take(MOST_WORLDS).map(by).collect()
@@ -127,19 +126,19 @@ fn stepped(base: Settings, stepper: Stepper) -> Settings {
     settings.with_only_what_is_taken()
 }
 
-fn presets(ui: &mut Ui, state: &mut AppState) {
-    let Some(base) = state.wanted.get(state.selected).map(|wanted| wanted.settings) else { return };
+fn presets(ui: &mut Ui, run: &mut WatchedRun) {
+    let Some(base) = run.wanted_settings() else { return };
     ui.horizontal_wrapped(|ui| {
         for LineUp { name, hint, worlds } in &LINE_UPS {
             if ui.button(*name).on_hover_text(*hint).clicked() {
-                state.live.send(Command::Compare(worlds(base)));
+                run.live.send(Command::Compare(worlds(base)));
             }
         }
     });
 }
 
 /// One world's row. True where it is to be removed.
-fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
+fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {
         // Names are words on the panel's ground; the colour alone would not always be readable.
@@ -147,13 +146,13 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
         ui.label(RichText::new("■").color(colour));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             removed = ui.small_button("✖").on_hover_text("Remove this world.").clicked();
-            let name = numbered(state, index);
+            let name = run.numbered_title(index);
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.with_layout(left, |ui| {
-                let chosen = Button::selectable(state.selected == index, name.as_str());
+                let chosen = Button::selectable(run.selected == index, name.as_str());
                 let hint = format!("{name}\nSliders, Law and solver are about this world.");
                 if ui.add(chosen.truncate()).on_hover_text(hint).clicked() {
-                    state.selected = index;
+                    run.selected = index;
                 }
             });
         });
@@ -161,26 +160,10 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
     removed
 }
 
-/// The slump of a world, where that tells anything.
-pub(super) fn slump(state: &AppState, index: usize) -> String {
-    let slump = state.frame.worlds.get(index).map(|world| world.snapshot.observables.slump);
-    let told = slump.filter(|_| state.slumps());
-    told.map_or_else(String::new, |slump| format!("Δy {slump:.3}"))
-}
-
-/// What tells a world from the others, with the number by which headings call it.
-pub(super) fn numbered(state: &AppState, index: usize) -> String {
-    format!("{}: {}", index + 1, title(state, index))
-}
-
-/// What tells a world from the others.
-pub(crate) fn title(state: &AppState, index: usize) -> String {
-    title_among(&state.wanted, index)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::titles::title_among;
     use crate::live::Controls;
 
     fn titles(all: &[Settings]) -> Vec<String> {
