@@ -1,17 +1,19 @@
-//! What panels share, and their requests to the window as a whole, which carries them out once all panels are drawn.
+//! The context that panels share, and their requests to the window, which carries them out once all panels are drawn.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::Rect;
 
 use super::camera::SceneCamera;
 use super::ensemble::Ensemble;
-use super::exports::Exports;
+use super::exports::{Exports, Printers};
 use super::notice::Notice;
 use super::preferences::Preferences;
 use super::watched_run::WatchedRun;
+use super::work::MaySend;
 use crate::config::Config;
+use crate::error::Result;
 use crate::live::PastRun;
 
 /// A request of a panel.
@@ -32,7 +34,7 @@ pub(crate) enum Request {
     CopyLink,
 }
 
-/// What panels share. Everything else that a panel needs between two frames is its own.
+/// The state that panels share. Any other state that a panel keeps between two frames is its own.
 pub(crate) struct PanelContext<'a> {
     pub run: &'a mut WatchedRun,
     pub preferences: &'a mut Preferences,
@@ -55,6 +57,16 @@ impl PanelContext<'_> {
     /// Says in the status bar for a while what went wrong.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         *self.notice = Some(Notice::new(text, true));
+    }
+
+    /// Has a file written into the folder of the preferences. The job says which.
+    pub(crate) fn write(
+        &mut self,
+        context: &egui::Context,
+        job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + MaySend + 'static,
+    ) {
+        let job = |folder: &Path, printers: &mut Printers, _: Vec<()>| job(folder, printers);
+        self.exports.write(context, &self.preferences.folder, Vec::new(), job);
     }
 
     /// Notes where a control lies.

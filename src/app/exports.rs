@@ -12,7 +12,7 @@ use super::film::FilmFormat;
 use super::link::link_of;
 use super::notice::Notice;
 use super::watched_run::TakenRun;
-use super::work::{MaySend, Work};
+use super::work::{MaySend, Work, outcome_of_ended};
 use crate::error::{Error, Result};
 use crate::live::Curve;
 use crate::output::{Texts, check_writable, write_file};
@@ -51,19 +51,9 @@ impl Exports {
         !self.files.is_empty() || self.data.export.is_some() || self.film.is_some()
     }
 
-    /// Has a file written into a folder, after those that are being written. The job says which.
-    pub(super) fn write(
-        &mut self,
-        context: &egui::Context,
-        folder: &Path,
-        job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + MaySend + 'static,
-    ) {
-        let job = |folder: &Path, printers: &mut Printers, _: Vec<()>| job(folder, printers);
-        self.write_runs(context, folder, Vec::new(), job);
-    }
-
-    /// Has a file written about runs that are handed out first.
-    pub(super) fn write_runs<R: Send + 'static>(
+    /// Has a file written into a folder, after those that are being written and after the runs that it is about have been
+    /// handed out. The job says which file.
+    pub(super) fn write<R: Send + 'static>(
         &mut self,
         context: &egui::Context,
         folder: &Path,
@@ -100,13 +90,11 @@ impl Exports {
             self.film = None;
             notice = Some(outcome.into());
         }
-        if let Some(outcome) = self.data.export.as_ref().and_then(Work::outcome) {
-            self.data.export = None;
+        if let Some(outcome) = outcome_of_ended(&mut self.data.export) {
             notice = Some(outcome.into());
             self.data.told.clone_from(&notice);
         }
-        if let Some(outcome) = self.link.as_ref().and_then(Work::outcome) {
-            self.link = None;
+        if let Some(outcome) = outcome_of_ended(&mut self.link) {
             notice = Some(match outcome {
                 Ok((text, is_pulled)) => {
                     context.copy_text(text);

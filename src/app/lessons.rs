@@ -196,7 +196,7 @@ pub const LESSONS: [Lesson; 7] = [
 const LONG_STEP_SECS: f64 = 5e-3;
 
 impl Lesson {
-    /// What the lesson chooses in the place of the user.
+    /// The choices that the lesson makes in place of the user.
     pub(super) fn choices(&self) -> Choices {
         Choices {
             quantities: self.plots.iter().map(|name| (*name).to_owned()).collect(),

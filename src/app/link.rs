@@ -1,5 +1,5 @@
-//! Links: a link is a line of text that opens a run again: where its scene comes from, and for each world its settings,
-//! what was changed on the way, and how many steps it has taken.
+//! Links. A link is a line of text that opens a run again. It says the origin of the scene and, for each world, the
+//! settings, the changes on the way and the number of steps.
 //!
 //! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
 //!

@@ -3,6 +3,9 @@
 //! `ui` is a function of [`AppState`] alone and knows neither window nor GPU; the private module
 //! `window` runs it on a screen. The simulation itself runs on the thread of
 //! [`crate::live`].
+//!
+//! [`WatchedRun`] is the run that is shown. `panels` draw it: each panel has its own state, and all of them share a
+//! `context::PanelContext`. [`AppState`] composes the panels and carries out their requests once they are drawn.
 
 mod axes;
 #[cfg(target_arch = "wasm32")]

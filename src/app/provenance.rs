@@ -1,4 +1,4 @@
-//! Provenance of a run: its command line, and what files say of themselves.
+//! Provenance of a run: its command line, and the texts in files that it is saved to.
 
 use super::watched_run::WatchedRun;
 use crate::config::{Config, Provenance, asked_time_secs, joined, words_up_to};

@@ -1,4 +1,4 @@
-//! The start of a scene or of a saved run: what is drawn before the first step, and whether slump says anything of it.
+//! The start of a run from a scene or from a saved run.
 
 use glam::DVec2;
 

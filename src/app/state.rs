@@ -1,4 +1,5 @@
-//! The state of the window as a whole, and what acts on more than one of its parts. Knows neither window nor GPU.
+//! The state of the user interface as a whole, and actions that change more than one of its parts. Knows neither window
+//! nor GPU.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -79,7 +80,7 @@ impl AppState {
         state
     }
 
-    /// What the panels share, and the panels.
+    /// The context that the panels share, and the panels.
     pub(super) fn split(&mut self) -> (PanelContext<'_>, &mut Panels) {
         let context = PanelContext {
             run: &mut self.run,
@@ -95,7 +96,7 @@ impl AppState {
         (context, &mut self.panels)
     }
 
-    /// Does what a panel asked for.
+    /// Carries out the request of a panel.
     pub(super) fn carry_out(&mut self, context: &Context, request: Request) {
         match request {
             Request::Load(config) => self.load(config),
@@ -216,7 +217,7 @@ impl AppState {
     /// Saves the moment that the selected world has come to.
     fn save_state(&mut self, context: &Context) {
         let run = self.run.take(self.run.selected);
-        self.exports.write_runs(context, &self.preferences.folder, vec![run], |folder, _, runs| {
+        self.exports.write(context, &self.preferences.folder, vec![run], |folder, _, runs| {
             write_state(folder, runs.into_iter().next().ok_or_else(closed)?)
         });
     }
@@ -237,7 +238,7 @@ impl AppState {
         self.run.live.send(Command::TakeAll(Box::new(hand_on)));
         let stem = self.run.file_stem();
         let folder = &self.preferences.folder;
-        self.exports.write_runs(context, folder, vec![run], move |folder, _, runs| {
+        self.exports.write(context, folder, vec![run], move |folder, _, runs| {
             let start = runs.into_iter().next().ok_or_else(closed)?;
             write_session(folder, &stem, start, &arrangement)
         });

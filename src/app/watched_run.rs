@@ -1,4 +1,4 @@
-//! A run as the window watches it: the live run, its newest frame, what the controls want of it, and what is selected.
+//! The run that the window watches: the live run, its newest frame, the wanted controls and the selection.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -28,7 +28,7 @@ pub struct WatchedRun {
     pub live: Live,
     /// Its newest frame.
     pub frame: LiveFrame,
-    /// What the controls show, one entry per world: ahead of the frame by the commands that are on their way.
+    /// The settings that the controls show, one entry per world. They are ahead of the frame by the commands on the way.
     pub(crate) wanted: Vec<Controls>,
     /// The settings that a slider of the front is being dragged to, and their world.
     pub(crate) draft: Option<(usize, Settings)>,
@@ -91,7 +91,12 @@ impl WatchedRun {
         self.wanted.get(self.selected).map(|wanted| wanted.settings)
     }
 
-    /// True if what is open is a heap, whose slump says something.
+    /// The settings that the controls want of the selected world, and the start, which has their defaults.
+    pub(crate) fn wanted_and_start(&self) -> Option<(Settings, Arc<LiveStart>)> {
+        Some((self.wanted_settings()?, self.frame.start.clone()?))
+    }
+
+    /// True if the open scene is a heap, whose slump means something.
     pub(crate) fn slumps(&self) -> bool {
         self.frame.start.as_ref().is_some_and(|start| start.slumps)
     }
@@ -142,7 +147,7 @@ impl WatchedRun {
     }
 
     /// The last run before, if at most one of its worlds had other settings than now. A ghost of another comparison would
-    /// show beside numbers that are not its own.
+    /// be next to numbers that are not its own.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         let (last, worlds) = (self.frame.past.last()?, &self.frame.worlds);
         let others = last.worlds.iter().zip(worlds.iter());

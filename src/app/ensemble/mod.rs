@@ -116,13 +116,13 @@ impl Ensemble {
         text
     }
 
-    /// What is said of a world's other piles at the moment that is shown; nothing if it has none.
+    /// The result of a world's other piles at the moment that is shown, in words; nothing if the world has none.
     pub(crate) fn said(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         let row = frame.worlds.get(world)?.snapshot.observables;
         Some(said(&self.summary(world)?, row.time_secs))
     }
 
-    /// The same in short, for narrow places.
+    /// The words of `said` in short, for narrow places.
     pub(crate) fn said_in_short(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         Some(self.said(frame, world)?.replace("other piles", "others"))
     }

@@ -16,9 +16,9 @@ const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 /// Most worlds side by side.
 const MOST_WORLDS: usize = 6;
 
-pub(crate) fn show(ui: &mut Ui, run: &mut WatchedRun) {
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.label(
-        RichText::new("Worlds from one initial context, kept at the same simulated time.")
+        RichText::new("Worlds from one initial state, kept at the same simulated time.")
             .small()
             .weak(),
     );
@@ -111,7 +111,7 @@ const LINE_UPS: [LineUp; 7] = [
     },
     LineUp {
         name: "Steppers",
-        hint: "As many ways to step as there is room for, from the same context.",
+        hint: "As many ways to step as there is room for, from the same state.",
         worlds: |base| {
             let by = |&stepper: &Stepper| stepped(base, stepper);
             Stepper::ALL.iter().take(MOST_WORLDS).map(by).collect()

@@ -12,7 +12,7 @@ use crate::data::{DataSettings, FormatName, check_format};
 /// Shortest and longest simulated time between two frames, s.
 const EVERY: [f64; 2] = [1e-9, 1e9];
 
-pub(crate) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let is_ready = context.run.is_ready();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, context));
     if IN_BROWSER {
@@ -31,10 +31,10 @@ pub(crate) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
 
 fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
-        let save = ui.button("Save context").on_hover_text(
+        let save = ui.button("Save state").on_hover_text(
             "The moment that is shown as a .slump file in the folder: the run goes on from it bit for bit, here or with --restart.",
         );
-        context.note_control("Save context", save.rect);
+        context.note_control("Save state", save.rect);
         if save.clicked() {
             context.ask(Request::SaveState);
         }
@@ -52,7 +52,7 @@ fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// The field for a file that is opened.
 fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
-        let hint = "A file that Save context, Save session, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
+        let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
         let label = ui.label("Saved").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let is_named = !context.exports.data.saved_run.trim().is_empty();

@@ -11,7 +11,7 @@ use crate::app::axes::bare_plot;
 use crate::app::context::PanelContext;
 use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
-use crate::app::work::Work;
+use crate::app::work::{Work, outcome_of_ended};
 use crate::granular::{Histogram, histograms};
 
 /// Least time between two moments that are counted.
@@ -73,18 +73,16 @@ impl Distributions {
     fn count(&mut self, ui: &Ui, run: &mut WatchedRun) {
         let Some(world) = run.world() else { return };
         let of = Some((run.selected, world.snapshot.observables.step));
-        if let Some(outcome) = self.coming.as_ref().and_then(Work::outcome) {
-            (self.histograms, self.coming) = (outcome.unwrap_or_default(), None);
+        if let Some(outcome) = outcome_of_ended(&mut self.coming) {
+            self.histograms = outcome.unwrap_or_default();
         }
         let has_rested = self.asked.is_none_or(|at| at.elapsed() >= INTERVAL);
         let is_due = self.coming.is_none() && has_rested && self.of != of;
         if is_due && !run.frame.seeking {
             let taken = run.take(run.selected);
-            let count = move |mut runs: Vec<TakenRun>, _: &_| {
-                Ok(runs
-                    .pop()
-                    .map_or_else(Vec::new, |run| histograms(&run.world.simulation.moment())))
-            };
+            let of_run = |run: TakenRun| histograms(&run.world.simulation.moment());
+            let count =
+                move |mut runs: Vec<_>, _: &_| Ok(runs.pop().map(of_run).unwrap_or_default());
             self.coming = Some(Work::start(ui.ctx(), vec![taken], count));
             (self.of, self.asked) = (of, Some(Instant::now()));
         } else if run.frame.playing || self.coming.is_some() {

@@ -14,7 +14,7 @@ const PACES: [f64; 7] = [0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 /// Least width of a slider with its number, points.
 const LEAST_WIDTH: f32 = 150.0;
 
-pub(crate) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.add_enabled_ui(context.run.is_ready(), |ui| {
         ui.horizontal(|ui| {
             release_button(ui, context);
@@ -138,15 +138,10 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
 
 /// The sliders of what the scene has of them, side by side.
 fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
-    let (index, Some(start)) = (context.run.selected, context.run.frame.start.clone()) else {
-        return;
-    };
-    let Some(before) = context.run.wanted_settings() else { return };
-    let mut settings = before;
-    let controls: Vec<_> = shown_settings(context.run, &before)
-        .into_iter()
-        .filter(|about| FRONT_SETTINGS.contains(&about.name))
-        .collect();
+    let Some((before, start)) = context.run.wanted_and_start() else { return };
+    let (index, mut settings) = (context.run.selected, before);
+    let mut controls = shown_settings(context.run, &before);
+    controls.retain(|about| FRONT_SETTINGS.contains(&about.name));
     let columns = ((ui.available_width() / LEAST_WIDTH) as usize).clamp(1, FRONT_SETTINGS.len());
     for row in controls.chunks(columns) {
         ui.columns(columns, |columns| {

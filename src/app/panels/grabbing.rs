@@ -46,9 +46,15 @@ pub(super) struct WorldCell<'a> {
     pub camera: Camera,
     pub pixels_per_point: f64,
     pub frame: &'a WorldFrame,
+    pub response: &'a Response,
 }
 
 impl WorldCell<'_> {
+    /// The place of the mouse if it hovers here or was pressed here.
+    fn pointer(&self) -> Option<Pos2> {
+        self.response.hover_pos().or_else(|| self.response.interact_pointer_pos())
+    }
+
     fn to_world(&self, at: Pos2) -> DVec2 {
         let offset = (at - self.cell.center()) * self.pixels_per_point as f32;
         self.camera.unproject(DVec2::new(f64::from(offset.x), -f64::from(offset.y)))
@@ -77,13 +83,7 @@ impl WorldCell<'_> {
     }
 
     /// Rings around the grains that are hovered, pinned and grabbed.
-    pub(super) fn marks(
-        &self,
-        ui: &Ui,
-        mouse: &Grabbing,
-        context: &PanelContext<'_>,
-        response: &Response,
-    ) {
+    pub(super) fn marks(&self, ui: &Ui, mouse: &Grabbing, context: &PanelContext<'_>) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let accent = theme::accent(ui.visuals().dark_mode);
         let ring = |grain: &GrainView, width: f32, colour: Color32| {
@@ -104,7 +104,7 @@ impl WorldCell<'_> {
         if let Some(grabbed) = mouse.grabbed.filter(|grabbed| grabbed.world == self.index) {
             let grain = &grains[grabbed.grain];
             ring(grain, 2.0, accent);
-            if let Some(at) = response.interact_pointer_pos() {
+            if let Some(at) = self.response.interact_pointer_pos() {
                 let stroke = Stroke::new(2.0, accent);
                 painter.line_segment([self.to_screen(grain.position), at], stroke);
                 painter.circle_filled(at, 4.0, accent);
@@ -112,27 +112,20 @@ impl WorldCell<'_> {
             return;
         }
         let changes = ui.input(|input| input.modifiers.shift);
-        if let Some(at) = response.hover_pos().filter(|_| changes || mouse.grip.is_some()) {
+        if let Some(at) = self.response.hover_pos().filter(|_| changes || mouse.grip.is_some()) {
             return self.marks_of_hand(ui, mouse.grip, context.preferences, at);
         }
-        let hovered = response.hover_pos().and_then(|at| self.grain_at(at));
+        let hovered = self.response.hover_pos().and_then(|at| self.grain_at(at));
         if let Some(hovered) = hovered {
             ring(&grains[hovered.grain], 1.5, accent);
-            response
-                .clone()
-                .on_hover_ui_at_pointer(|ui| super::grain::describe(ui, self.frame, hovered.grain));
+            let describe = |ui: &mut Ui| super::grain::describe(ui, self.frame, hovered.grain);
+            self.response.clone().on_hover_ui_at_pointer(describe);
         }
     }
 
     /// Has the mouse act.
-    pub(super) fn act(
-        &self,
-        ui: &Ui,
-        mouse: &mut Grabbing,
-        context: &mut PanelContext<'_>,
-        response: &Response,
-    ) {
-        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
+    pub(super) fn act(&self, ui: &Ui, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
+        let (response, pointer) = (self.response, self.pointer());
         let changes = ui.input(|input| input.modifiers.shift);
         if response.drag_started_by(PointerButton::Primary) {
             let pressed = ui.input(|input| input.pointer.press_origin());
@@ -143,12 +136,12 @@ impl WorldCell<'_> {
             }
         }
         if mouse.grip.is_some_and(|grip| grip.world == self.index) {
-            self.draw_wall(mouse, context, response, pointer);
+            self.draw_wall(mouse, context);
         } else {
-            self.pull_or_pan(mouse, context, response, pointer);
+            self.pull_or_pan(mouse, context);
         }
         match (response.double_clicked(), response.clicked(), changes) {
-            (_, true, true) => self.change_grains(context, pointer),
+            (_, true, true) => self.change_grains(context),
             (true, _, false) => context.camera.frame_scene(),
             (false, true, false) => {
                 context.run.selected = self.index;
@@ -167,25 +160,16 @@ impl WorldCell<'_> {
         }
     }
 
-    fn pull_or_pan(
-        &self,
-        mouse: &mut Grabbing,
-        context: &mut PanelContext<'_>,
-        response: &Response,
-        pointer: Option<Pos2>,
-    ) {
+    fn pull_or_pan(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
+        let (response, run) = (self.response, &mut *context.run);
         let held = mouse.grabbed.filter(|grabbed| grabbed.world == self.index);
-        if let (Some(held), Some(at)) = (held, pointer) {
+        if let (Some(held), Some(at)) = (held, self.pointer()) {
             if response.dragged() {
                 let pull = Pull { grain: held.grain as u32, target: self.to_world(at) };
-                if context
-                    .run
-                    .wanted
-                    .get(self.index)
-                    .is_some_and(|wanted| wanted.pull != Some(pull))
-                {
-                    context.run.wanted[self.index].pull = Some(pull);
-                    context.run.live.send(Command::SetPull(self.index, Some(pull)));
+                let wanted = run.wanted.get_mut(self.index);
+                if let Some(wanted) = wanted.filter(|wanted| wanted.pull != Some(pull)) {
+                    wanted.pull = Some(pull);
+                    run.live.send(Command::SetPull(self.index, Some(pull)));
                 }
             }
         } else if response.dragged() {
@@ -193,20 +177,14 @@ impl WorldCell<'_> {
         }
         if held.is_some() && !response.dragged() {
             mouse.grabbed = None;
-            context.run.live.send(Command::SetPull(self.index, None));
+            run.live.send(Command::SetPull(self.index, None));
         }
     }
 
     /// Has the wall in the hand follow the mouse, or lets go of it.
-    fn draw_wall(
-        &self,
-        mouse: &mut Grabbing,
-        context: &mut PanelContext<'_>,
-        response: &Response,
-        pointer: Option<Pos2>,
-    ) {
+    fn draw_wall(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let Some(mut grip) = mouse.grip else { return };
-        if !response.dragged() {
+        if !self.response.dragged() {
             mouse.grip = None;
             if grip.sent.is_some() {
                 context.run.live.send(Command::Edit(self.index, Edit::LetGo));
@@ -214,7 +192,8 @@ impl WorldCell<'_> {
             return;
         }
         let boundaries = &self.frame.snapshot.surroundings.boundaries;
-        let (Some(at), Some(boundary)) = (pointer, boundaries.get(grip.boundary)) else { return };
+        let boundary = boundaries.get(grip.boundary);
+        let (Some(at), Some(boundary)) = (self.pointer(), boundary) else { return };
         if !context.run.frame.playing {
             return context.warn(STANDS_STILL);
         }
@@ -228,8 +207,8 @@ impl WorldCell<'_> {
     }
 
     /// Takes out the grain under the mouse, or puts one where there is none.
-    fn change_grains(&self, context: &mut PanelContext<'_>, pointer: Option<Pos2>) {
-        let Some(at) = pointer else { return };
+    fn change_grains(&self, context: &mut PanelContext<'_>) {
+        let Some(at) = self.pointer() else { return };
         context.run.selected = self.index;
         let edit = match self.grain_at(at) {
             Some(found) => Edit::Remove(found.grain as u32),

@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
 }
 
 /// Shows it in a corner of the scene where its page is not open.
-pub(crate) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
+pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     if context.preferences.page == Some(Page::Pile) {
         return;
     }
@@ -54,8 +54,8 @@ pub(super) fn unless_at_rest(velocity: f64) -> f64 {
     if velocity.abs() < AT_REST { 0.0 } else { velocity }
 }
 
-/// The context of a grain, as a small table.
-pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
+/// The state of a grain, as a small table.
+pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     let grain = &world.snapshot.grains[index];
     let diameter = world.snapshot.surroundings.mean_diameter;
     ui.label(RichText::new(format!("Grain {index}")).strong());

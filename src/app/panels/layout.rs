@@ -1,4 +1,4 @@
-//! The layout of the window: its panels, and where they are.
+//! The layout of the window.
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 

@@ -1,4 +1,4 @@
-//! The bar above the scene: the lessons, and what the present one says.
+//! The bar above the scene: the list of lessons and the text of the present one.
 
 use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui};
 
@@ -20,39 +20,10 @@ impl LessonBar {
     pub(super) fn show(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let at = context.preferences.lesson.at.min(LESSONS.len() - 1);
         ui.horizontal(|ui| {
-            let dark = ui.visuals().dark_mode;
-            let accent = theme::accent(dark);
+            let accent = theme::accent(ui.visuals().dark_mode);
             ui.label(RichText::new("Slump").heading().color(accent));
             list(ui, context, at);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let fold = ui.button("▴").on_hover_text("Fold the bars: the scene is the window (B)");
-            fold.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fold"));
-            context.preferences.folded |= fold.clicked();
-            if !context.touring {
-                return;
-            }
-            let hint =
-                "End the lessons; the worlds stay. They go on here when they are taken up again.";
-            let leave = ui.button("Leave").on_hover_text(hint);
-            context.note_control("leave lessons", leave.rect);
-            if leave.clicked() {
-                return context.ask(Request::LeaveLessons);
-            }
-            let next = RichText::new("Next ▶").color(theme::on_accent(dark));
-            let next = ui.add_enabled(at + 1 < LESSONS.len(), Button::new(next).fill(accent));
-            context.note_control("next lesson", next.rect);
-            let next = next.on_hover_text("The next lesson");
-            if next.clicked() {
-                context.ask(Request::Visit(at + 1));
-            }
-            let back = ui.add_enabled(at > 0, Button::new("◀ Back"));
-            if back.on_hover_text("The lesson before").clicked() {
-                context.ask(Request::Visit(at.saturating_sub(1)));
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(Label::new(RichText::new(LESSONS[at].title).heading()).truncate());
-            });
-        });
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ways(ui, context, at));
         });
         if context.touring {
             let is_changed = self.has_other_worlds(context.run, &LESSONS[at]);
@@ -74,6 +45,38 @@ impl LessonBar {
         let are_all = shown.len() == worlds.len() && worlds.iter().zip(&shown).all(is_as_it_was);
         is_there && !are_all && held().next().is_some()
     }
+}
+
+/// The buttons, from the right: fold the bars, leave the lessons, go on, go back.
+fn ways(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {
+    let dark = ui.visuals().dark_mode;
+    let hint = "Fold the bars: the scene is the window (B)";
+    let fold = ui.button("▴").on_hover_text(hint);
+    fold.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fold"));
+    context.preferences.folded |= fold.clicked();
+    if !context.touring {
+        return;
+    }
+    let hint = "End the lessons; the worlds stay. They go on here when they are taken up again.";
+    let leave = ui.button("Leave").on_hover_text(hint);
+    context.note_control("leave lessons", leave.rect);
+    if leave.clicked() {
+        return context.ask(Request::LeaveLessons);
+    }
+    let next = RichText::new("Next ▶").color(theme::on_accent(dark));
+    let next = ui.add_enabled(at + 1 < LESSONS.len(), Button::new(next).fill(theme::accent(dark)));
+    context.note_control("next lesson", next.rect);
+    let next = next.on_hover_text("The next lesson");
+    if next.clicked() {
+        context.ask(Request::Visit(at + 1));
+    }
+    let back = ui.add_enabled(at > 0, Button::new("◀ Back"));
+    if back.on_hover_text("The lesson before").clicked() {
+        context.ask(Request::Visit(at.saturating_sub(1)));
+    }
+    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+        ui.add(Label::new(RichText::new(LESSONS[at].title).heading()).truncate());
+    });
 }
 
 /// Lights the controls that the lesson asks for next, where all of the window is drawn.

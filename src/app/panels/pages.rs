@@ -1,4 +1,4 @@
-//! The pages of the sidebar, and what is on them.
+//! The contents of the pages of the sidebar.
 
 use egui::{CollapsingHeader, RichText, Ui};
 
@@ -11,7 +11,7 @@ use crate::app::IN_BROWSER;
 use crate::app::context::PanelContext;
 use crate::app::page::Page;
 
-/// What the panels of the pages keep between two frames.
+/// The state of the panels on the pages.
 #[derive(Default)]
 pub(crate) struct Pages {
     gallery: Gallery,
@@ -21,12 +21,12 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// Forgets the race: it is of a run that is gone.
+    /// Forgets the measurement of a step, because its run is gone.
     pub(crate) fn forget_race(&mut self) {
         self.race = None;
     }
 
-    /// Shows what is on a page.
+    /// Shows a page.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, page: Page) {
         // A name would make the panel as wide as it is long.
         if context.run.compares() && matches!(page, Page::Solver | Page::Save) {

@@ -9,11 +9,9 @@ use crate::app::{setting_control, theme};
 use crate::contact::range::escape_speed;
 use crate::sim::{Settings, Stepper};
 
-pub(crate) fn show(ui: &mut Ui, run: &mut WatchedRun) {
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
-    let (Some(before), Some(start)) = (run.wanted_settings(), run.frame.start.clone()) else {
-        return;
-    };
+    let Some((before, start)) = run.wanted_and_start() else { return };
     let mut settings = before;
     stepper_switch(ui, &mut settings);
     for about in shown_settings(run, &before) {

@@ -14,7 +14,7 @@ use crate::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 use crate::study::png::write_png;
 
-pub(crate) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let data = data(ui, context);
     if let Some(time_secs) = draw(ui, &data) {
         context
@@ -64,7 +64,7 @@ fn means_something(run: &WatchedRun, quantity: &Quantity<Observables>) -> bool {
 }
 
 /// The line above the plots: what folds them, and what other piles say beside the selected world.
-pub(crate) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
+pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let text = if context.preferences.plots { "▾ Plot" } else { "▸ Plot" };
         let plots = ui.selectable_label(false, text).on_hover_text("Show or fold the plots");
@@ -120,7 +120,7 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let size = context.preferences.picture_size;
         let (dark, texts) = (ui.visuals().dark_mode, context.run.texts(false));
         let stem = stem.clone();
-        context.exports.write(ui.ctx(), &context.preferences.folder, move |folder, printers| {
+        context.write(ui.ctx(), move |folder, printers| {
             let path = free_path(folder, &stem, "png");
             write_png(&path, &printers.canvas()?.print(&data, size, dark)?, &texts)?;
             Ok(path)
@@ -131,7 +131,7 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let worlds = context.run.frame.worlds.iter();
         let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
         let texts = context.run.texts(false);
-        context.exports.write(ui.ctx(), &context.preferences.folder, move |folder, _| {
+        context.write(ui.ctx(), move |folder, _| {
             let path = free_path(folder, &stem, "csv");
             write_table(&path, &curves, &texts)?;
             Ok(path)

@@ -69,7 +69,7 @@ pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if let Some(world) = context.run.world() {
         let text = format!("State {}", world.snapshot.state_hash());
         let hint = "A hash of where all grains are and how they move, bit by bit. Runs with the same one have come to the \
-                    same context; manifest.json has it as last_state.";
+                    same state; manifest.json has it as last_state.";
         ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
     }
 }

@@ -88,8 +88,9 @@ impl ScenePanel {
         let response =
             ui.interact(cell, ui.scope_id().with(("world", index)), Sense::click_and_drag());
         let frame = context.run.frame.worlds[index].clone();
-        let place = WorldCell { index, cell, camera, pixels_per_point, frame: &frame };
-        place.act(ui, &mut self.mouse, context, &response);
+        let place =
+            WorldCell { index, cell, camera, pixels_per_point, frame: &frame, response: &response };
+        place.act(ui, &mut self.mouse, context);
 
         // The mouse may have moved the camera.
         let camera = context.camera.camera(context.run.view(), style, size, pixels_per_point);
@@ -99,7 +100,7 @@ impl ScenePanel {
         place.ghost(ui, context);
         place.words(ui, context, style, size);
         paint_gravity(ui, context, index, cell);
-        place.marks(ui, &self.mouse, context, &response);
+        place.marks(ui, &self.mouse, context);
         if index == context.run.selected {
             context.note_control("scene", cell);
         }

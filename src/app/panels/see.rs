@@ -156,7 +156,7 @@ pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) 
     let style = shared_style(context.run, context.preferences, gui.theme() == egui::Theme::Dark);
     let picture = scene_picture(context, style, context.preferences.picture_size, true);
     let stem = context.run.file_stem();
-    context.exports.write(gui, &context.preferences.folder, move |folder, printers| {
+    context.write(gui, move |folder, printers| {
         let path = free_path(folder, &stem, "png");
         write_png(&path, &picture.draw(printers.renderer()?)?, &picture.texts)?;
         Ok(path)
@@ -206,10 +206,8 @@ fn scene_picture(
     let camera = context.camera.for_picture(context.run.view(), &of_one, size_of_one, window);
     let worlds = context.run.frame.worlds.iter().enumerate().map(|(index, world)| {
         // What came of a world, and below it what came of others.
-        let others = context
-            .ensemble
-            .said_in_short(&context.run.frame, index)
-            .map_or(String::new(), |text| format!("\n{text}"));
+        let others = context.ensemble.said_in_short(&context.run.frame, index);
+        let others = others.map_or(String::new(), |text| format!("\n{text}"));
         PicturedWorld {
             snapshot: world.snapshot.clone(),
             title: context.run.numbered_title(index),

@@ -12,11 +12,9 @@ use crate::setting::{About, Control, Group};
 use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
 use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
-pub(crate) fn show(ui: &mut Ui, run: &mut WatchedRun) {
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
-    let (Some(before), Some(start)) = (run.wanted_settings(), run.frame.start.clone()) else {
-        return;
-    };
+    let Some((before, start)) = run.wanted_and_start() else { return };
     let mut settings = before;
     if before.stepper.uses_method()
         && let Some(world) = run.world()

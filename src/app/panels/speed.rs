@@ -11,7 +11,7 @@ use crate::Instant;
 use crate::app::axes::{plot_with_axes, with_least, with_room};
 use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
-use crate::app::work::{Reporter, Work};
+use crate::app::work::{Reporter, Work, outcome_of_ended};
 use crate::error::Result;
 use crate::live::WorldFrame;
 use crate::sim::{Settings, Simulation, StepTimes};
@@ -153,10 +153,10 @@ const HEIGHT: f32 = 230.0;
 const COLOURS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
-    if let Some(race) = race.as_mut()
-        && let Some(outcome) = race.work.as_ref().and_then(Work::outcome)
+    if let Some(race) = race
+        && let Some(outcome) = outcome_of_ended(&mut race.work)
     {
-        (race.measured, race.work) = (outcome.unwrap_or_default(), None);
+        race.measured = outcome.unwrap_or_default();
     }
     match race.as_ref().and_then(|race| race.work.as_ref()) {
         Some(work) => work.show(ui, "Measuring", "Stop measuring", "Other methods are left out."),

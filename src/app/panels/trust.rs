@@ -15,7 +15,7 @@ use crate::app::context::PanelContext;
 use crate::app::ensemble::on_idle_cores;
 use crate::app::theme;
 use crate::app::watched_run::WatchedRun;
-use crate::app::work::Work;
+use crate::app::work::{Work, outcome_of_ended};
 use crate::config::Config;
 use crate::error::Error;
 use crate::live::WorldFrame;
@@ -29,6 +29,9 @@ const COST_SECS: f64 = 300.0;
 const OTHERWISE: &str = "mean(kinetic_energy)";
 /// Part of the steps up to which unsolved ones leave the rest worth something.
 const FEW: f64 = 0.01;
+
+/// The answer before the first one.
+const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, and hours for thousands.";
 
 /// The word in the status bar, and the list behind it.
 #[derive(Default)]
@@ -154,10 +157,7 @@ impl TrustPanel {
             ui.label(RichText::new(failure).weak());
             return;
         }
-        match &told {
-        Some((_, answer)) => ui.label(answer),
-        None => ui.label("Idle cores compute an error budget. The first answer takes a minute for a hundred grains, and hours for thousands."),
-    };
+        ui.label(told.as_ref().map_or(UNDER_WAY, |(_, answer)| answer));
         if let Some(work) = &budget.work {
             work.show(ui, "Error budget", "Stop", "What was found so far stays.");
         }
@@ -166,9 +166,8 @@ impl TrustPanel {
     /// Has the budget follow the run that is shown.
     fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
         if let Some(budget) = &mut self.budget
-            && let Some(outcome) = budget.work.as_ref().and_then(Work::outcome)
+            && let Some(outcome) = outcome_of_ended(&mut budget.work)
         {
-            budget.work = None;
             budget.failure = outcome.err().map(|error| error.to_string());
         }
         if IN_BROWSER {
