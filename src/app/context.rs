@@ -19,7 +19,7 @@ use crate::live::PastRun;
 /// A request of a panel.
 pub(crate) enum Request {
     /// Open a scene.
-    Load(Config),
+    Load(Box<Config>),
     /// Open the file of a saved run or of a session.
     LoadSaved(PathBuf),
     /// Go to a lesson.

@@ -99,7 +99,7 @@ impl AppState {
     /// Carries out the request of a panel.
     pub(super) fn carry_out(&mut self, context: &Context, request: Request) {
         match request {
-            Request::Load(config) => self.load(config),
+            Request::Load(config) => self.load(*config),
             Request::LoadSaved(path) => self.load_saved(&path),
             Request::Visit(at) => self.visit(at),
             Request::LeaveLessons => self.leave_lessons(),

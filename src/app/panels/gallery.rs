@@ -57,7 +57,7 @@ impl Gallery {
                             ui.end_row();
                         }
                         if self.entry(ui, context, index, info, info.name == current).clicked() {
-                            context.ask(Request::Load(Config::of_scene(info.name)));
+                            context.ask(Request::Load(Config::of_scene(info.name).into()));
                         }
                     }
                 });

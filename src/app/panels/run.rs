@@ -126,7 +126,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         context.note_control("new pile", fresh.rect);
         if fresh.clicked() {
             let config = pile_like_this(context.run, &pile);
-            context.ask(Request::Load(config));
+            context.ask(Request::Load(config.into()));
         }
     });
     if pile.grains >= LARGE {
