@@ -47,8 +47,8 @@ impl Window {
         let preferences =
             Preferences { full_speed: true, ensemble: false, ..Preferences::default() };
         let mut state = AppState::new(live, Config::default(), preferences);
-        state.live.send(load(simulation));
-        state.live.send(Command::SetPace(Pace::Max));
+        state.run.live.send(load(simulation));
+        state.run.live.send(Command::SetPace(Pace::Max));
         let context = egui::Context::default();
         theme::install(&context);
         let canvas = Canvas::new().expect("a graphics driver");
@@ -66,8 +66,8 @@ impl Window {
     fn wait(&mut self) {
         loop {
             self.draw();
-            let frame = &self.state.frame;
-            if frame.acknowledged == self.state.live.sent() && frame.loading.is_none() {
+            let frame = &self.state.run.frame;
+            if frame.acknowledged == self.state.run.live.sent() && frame.loading.is_none() {
                 return;
             }
         }
@@ -92,12 +92,12 @@ impl Window {
     fn pauses(&mut self) -> [f64; 2] {
         let mut millis: Vec<f64> = (0..CHANGES)
             .map(|_| {
-                self.state.live.send(Command::Play);
+                self.state.run.live.send(Command::Play);
                 std::thread::sleep(Duration::from_millis(57));
                 let start = Instant::now();
-                let told = self.state.live.send(Command::Pause);
+                let told = self.state.run.live.send(Command::Pause);
                 let stands = |frame: &LiveFrame| frame.acknowledged >= told && !frame.playing;
-                while !stands(self.state.live.latest()) {
+                while !stands(self.state.run.live.latest()) {
                     std::thread::sleep(Duration::from_micros(100));
                 }
                 1e3 * start.elapsed().as_secs_f64()
@@ -109,12 +109,12 @@ impl Window {
 
     /// The newest step that the solver has handed out.
     fn newest_step(&mut self) -> u64 {
-        let frame = self.state.live.latest();
+        let frame = self.state.run.live.latest();
         frame.worlds.first().map_or(0, |world| world.snapshot.observables.step)
     }
 
     fn steps(&self) -> u64 {
-        self.state.world().map_or(0, |world| world.snapshot.observables.step)
+        self.state.run.world().map_or(0, |world| world.snapshot.observables.step)
     }
 }
 
@@ -176,13 +176,13 @@ fn beside_other_piles() {
         state.ensemble.keep_in(cache.path().join(turn.to_string()));
         let context = egui::Context::default();
         theme::install(&context);
-        while state.frame.worlds.is_empty() || beside && state.ensemble.threads() == 0 {
+        while state.run.frame.worlds.is_empty() || beside && state.ensemble.threads() == 0 {
             let _ = context.run_ui(egui::RawInput::default(), |root| ui(root, &mut state));
         }
         std::thread::sleep(Duration::from_millis(300));
-        state.live.send(Command::Play);
+        state.run.live.send(Command::Play);
         let newest = |state: &mut AppState| {
-            let worlds = &state.live.latest().worlds;
+            let worlds = &state.run.live.latest().worlds;
             worlds.first().map_or(0, |world| world.snapshot.observables.step)
         };
         let begun = Instant::now();
@@ -200,7 +200,7 @@ fn frames() {
     for count in [138, 2_000, 10_000, 50_000] {
         let simulation = if count == 138 { pile() } else { large(count) };
         let mut window = Window::open(simulation);
-        window.state.live.send(Command::Play);
+        window.state.run.live.send(Command::Play);
         window.wait();
         let (start, first) = (Instant::now(), window.steps());
         let mut drawn = 0;
@@ -263,9 +263,9 @@ fn steps() {
         let mut window = Window::open(pile());
         let start = Instant::now();
         let (mut drawn, mut shown) = (start, 0);
-        window.state.live.send(Command::Play);
+        window.state.run.live.send(Command::Play);
         loop {
-            let news = window.state.live.latest().number != shown;
+            let news = window.state.run.live.latest().number != shown;
             // The end is looked for in the newest frame, drawn or not: that a picture of it comes
             // later is no loss of the solver's.
             if window.newest_step() >= STEPS {
@@ -275,7 +275,7 @@ fn steps() {
             if news && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
                 drawn = Instant::now();
                 window.draw();
-                shown = window.state.frame.number;
+                shown = window.state.run.frame.number;
             } else {
                 std::thread::sleep(Duration::from_millis(1));
             }

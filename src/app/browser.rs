@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use egui::Context;
 use egui_wgpu::CallbackResources;
 
-use super::opening::{Opening, opening_of, refused_file};
+use super::file_names::refused_file;
+use super::link::{RunLink, set_link_start};
+use super::opening::{Opening, opening_of};
 use super::painting::TargetFormat;
 use super::preferences::{Preferences, StoredWindow};
-use super::sharing::{RunLink, set_link_start};
 use super::state::AppState;
 use super::{theme, told};
 use crate::error::Result;

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::opening::TakenRun;
-use super::state::Notice;
+use super::notice::Notice;
+use super::watched_run::TakenRun;
 use super::work::{Reporter, Work};
 use crate::config::run_facts;
 use crate::data::{

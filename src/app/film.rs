@@ -4,8 +4,9 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use super::export::{ScenePicture, free_path};
-use super::opening::TakenRun;
+use super::file_names::free_path;
+use super::scene_picture::ScenePicture;
+use super::watched_run::TakenRun;
 use super::work::Reporter;
 use crate::error::{Error, Result};
 use crate::film::{Animation, Video};

@@ -1,19 +1,14 @@
 //! The lessons: each shows one thing, with worlds side by side and a sentence or two on what to watch.
 //! What their sentences say is checked by `tests/window/lessons.rs`, over many starts.
 
-use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui};
 use glam::DVec2;
-use serde::{Deserialize, Serialize};
 
 use super::IN_BROWSER;
-use super::opening::Opening;
-use super::panels::Page;
-use super::preferences::Preferences;
-use super::state::AppState;
-use super::theme;
+use super::page::Page;
+use super::preferences::{Choices, Preferences};
+use super::watched_run::WatchedRun;
 use crate::config::{Config, parse_discs};
 use crate::error::Result;
-use crate::live::Command;
 use crate::scene::{NewPile, Scene};
 use crate::sim::{Settings, Stepper};
 use crate::solver::{Method, SolverSettings};
@@ -43,7 +38,7 @@ pub struct Lesson {
     /// True of settings whose change its sentences ask for, or leave true.
     pub leaves_free: fn(&str) -> bool,
     /// The controls that it asks for next, which are lit, by the names that the window notes their places by.
-    pub asks_for: fn(&AppState) -> &'static [&'static str],
+    pub asks_for: fn(&WatchedRun, &Preferences) -> &'static [&'static str],
 }
 
 /// A pile of the paper, slow enough to be followed.
@@ -58,11 +53,11 @@ const PILE: Lesson = Lesson {
     page: None,
     starts_again: true,
     leaves_free: |_| false,
-    asks_for: |state| if waits_at_start(state) { &["release"] } else { &[] },
+    asks_for: |run, _| if waits_at_start(run) { &["release"] } else { &[] },
 };
 
-fn waits_at_start(state: &AppState) -> bool {
-    state.frame.at_start() && !state.frame.playing
+fn waits_at_start(run: &WatchedRun) -> bool {
+    run.frame.at_start() && !run.frame.playing
 }
 
 /// The seed of the lessons' pile, which slumps in the middle half of sixteen others in all of them; the shipped pile, which
@@ -122,14 +117,14 @@ pub const LESSONS: [Lesson; 7] = [
         worlds: |base| vec![base.with_bond(20.0).over(LONG_STEP_SECS)],
         starts_again: false,
         leaves_free: |name| name == "dt",
-        asks_for: |state| {
-            let parameters = state.world().map(|world| world.controls.settings.parameters);
+        asks_for: |run, preferences| {
+            let parameters = run.world().map(|world| world.controls.settings.parameters);
             let is_long = parameters.is_some_and(|it| it.time_step_secs == LONG_STEP_SECS);
-            match (state.frame.playing, is_long) {
+            match (run.frame.playing, is_long) {
                 (true, _) => &[],
-                _ if waits_at_start(state) => &["release"],
+                _ if waits_at_start(run) => &["release"],
                 (_, true) => &["Δt"],
-                _ if !state.preferences.starts_again => &["start again"],
+                _ if !preferences.starts_again => &["start again"],
                 _ => &[],
             }
         },
@@ -189,7 +184,7 @@ pub const LESSONS: [Lesson; 7] = [
                 grains with the mouse, and ask whether you can trust what you see.",
         page: Some(Page::Pile),
         leaves_free: |_| true,
-        asks_for: |state| match (waits_at_start(state), state.preferences.page) {
+        asks_for: |run, preferences| match (waits_at_start(run), preferences.page) {
             (true, Some(Page::Pile)) => &["scenes", "new pile", "Bond", "Δt", "ρ", "μ", "trust"],
             _ => &[],
         },
@@ -200,196 +195,28 @@ pub const LESSONS: [Lesson; 7] = [
 /// The time step of the lesson on bonds, s.
 const LONG_STEP_SECS: f64 = 5e-3;
 
-/// How far someone has come.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct LessonPlace {
-    /// The lesson, from 0.
-    pub at: usize,
-    /// True while a window that is told nothing else opens there.
-    pub on: bool,
-    /// What was chosen before the lessons, which comes back after them.
-    pub(super) before: Option<Choices>,
-}
-
-impl Default for LessonPlace {
-    fn default() -> Self {
-        Self { at: 0, on: true, before: None }
-    }
-}
-
-/// What a lesson chooses in the place of the user.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Choices {
-    pub quantities: Vec<String>,
-    pub speed: f64,
-    pub full_speed: bool,
-    pub starts_again: bool,
-    pub page: Option<Page>,
-}
-
-impl Choices {
-    /// Puts them into force, and gives those that were.
-    fn swap(self, preferences: &mut Preferences) -> Self {
-        Self {
-            quantities: std::mem::replace(&mut preferences.quantities, self.quantities),
-            speed: std::mem::replace(&mut preferences.speed, self.speed),
-            full_speed: std::mem::replace(&mut preferences.full_speed, self.full_speed),
-            starts_again: std::mem::replace(&mut preferences.starts_again, self.starts_again),
-            page: std::mem::replace(&mut preferences.page, self.page),
-        }
-    }
-}
-
-impl AppState {
-    /// Goes to a lesson.
-    pub fn visit(&mut self, at: usize) {
-        self.preferences.visit(at);
-        self.touring = true;
-        self.shown.loads_before_lesson = self.frame.loads;
-        self.live.send(Command::SetPace(self.preferences.pace()));
-        self.open(Opening::Lesson(self.preferences.lesson.at));
-    }
-
-    /// Ends the lessons, with the worlds as they are.
-    pub(crate) fn leave_lessons(&mut self) {
-        if std::mem::take(&mut self.touring) {
-            self.preferences.put_lesson_away();
-            self.preferences.lesson.on = false;
-            self.live.send(Command::SetPace(self.preferences.pace()));
-        }
-    }
-}
-
-impl Preferences {
-    /// Goes to a lesson, or to the last where there are not so many, and makes its choices.
-    pub(in crate::app) fn visit(&mut self, at: usize) {
-        let at = at.min(LESSONS.len() - 1);
-        let lesson = &LESSONS[at];
-        let choices = Choices {
-            quantities: lesson.plots.iter().map(|name| (*name).to_owned()).collect(),
-            speed: lesson.speed,
+impl Lesson {
+    /// The choices that the lesson makes in place of the user.
+    pub(super) fn choices(&self) -> Choices {
+        Choices {
+            quantities: self.plots.iter().map(|name| (*name).to_owned()).collect(),
+            speed: self.speed,
             full_speed: false,
-            starts_again: lesson.starts_again,
-            page: lesson.page,
-        };
-        let replaced = choices.swap(self);
-        let before = self.lesson.before.take().unwrap_or(replaced);
-        self.lesson = LessonPlace { at, on: true, before: Some(before) };
-    }
-
-    /// Brings back what was chosen before the lessons.
-    pub(in crate::app) fn put_lesson_away(&mut self) {
-        if let Some(before) = self.lesson.before.take() {
-            before.swap(self);
+            starts_again: self.starts_again,
+            page: self.page,
         }
     }
 }
 
-/// The bar above the scene.
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    let at = state.preferences.lesson.at.min(LESSONS.len() - 1);
-    ui.horizontal(|ui| {
-        let dark = ui.visuals().dark_mode;
-        let accent = theme::accent(dark);
-        ui.label(RichText::new("Slump").heading().color(accent));
-        list(ui, state, at);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let fold = ui.button("▴").on_hover_text("Fold the bars: the scene is the window (B)");
-            fold.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fold"));
-            state.preferences.folded |= fold.clicked();
-            if !state.touring {
-                return;
-            }
-            let hint =
-                "End the lessons; the worlds stay. They go on here when they are taken up again.";
-            let leave = ui.button("Leave").on_hover_text(hint);
-            state.note_control("leave lessons", leave.rect);
-            if leave.clicked() {
-                return state.leave_lessons();
-            }
-            let next = RichText::new("Next ▶").color(theme::on_accent(dark));
-            let next = ui.add_enabled(at + 1 < LESSONS.len(), Button::new(next).fill(accent));
-            state.note_control("next lesson", next.rect);
-            let next = next.on_hover_text("The next lesson");
-            if next.clicked() {
-                state.visit(at + 1);
-            }
-            let back = ui.add_enabled(at > 0, Button::new("◀ Back"));
-            if back.on_hover_text("The lesson before").clicked() {
-                state.visit(at.saturating_sub(1));
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(Label::new(RichText::new(LESSONS[at].title).heading()).truncate());
-            });
-        });
-    });
-    if state.touring {
-        let is_changed = has_other_worlds(state, &LESSONS[at]);
-        ui.label(if is_changed { OTHER_WORLDS } else { LESSONS[at].watch });
-    }
-}
-
-/// Lights the controls that the lesson asks for next, where all of the window is drawn.
-pub(crate) fn light(ui: &Ui, state: &AppState) {
-    if !state.touring || state.frame.loading.is_some() {
-        return;
-    }
-    let lesson = &LESSONS[state.preferences.lesson.at.min(LESSONS.len() - 1)];
-    let stroke = egui::Stroke::new(2.0, theme::accent(ui.visuals().dark_mode));
-    for name in (lesson.asks_for)(state) {
-        if let Some(rect) = state.controls.get(*name) {
-            let ring = rect.expand(3.0);
-            ui.painter().rect_stroke(ring, 5.0, stroke, egui::StrokeKind::Outside);
-        }
-    }
-}
-
-/// What is said in place of a lesson's sentences where they are no longer true.
-const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has it as it was.";
-
-/// True where worlds of a lesson are no longer those that it speaks of.
-fn has_other_worlds(state: &AppState, lesson: &Lesson) -> bool {
-    let Some(start) = &state.frame.start else { return false };
-    let worlds = (lesson.worlds)(*start.settings());
-    let is_there = state.frame.loads > state.shown.loads_before_lesson;
-    let shown: Vec<Settings> =
-        state.frame.worlds.iter().map(|world| world.controls.settings).collect();
-    let held = || Settings::about().filter(|about| !(lesson.leaves_free)(about.name));
-    let is_as_it_was = |(one, shown): (&Settings, &Settings)| {
-        held().all(|about| one.get(about.name) == shown.get(about.name))
-    };
-    let are_all = shown.len() == worlds.len() && worlds.iter().zip(&shown).all(is_as_it_was);
-    is_there && !are_all && held().next().is_some()
-}
-
-/// All lessons, to be gone to; the one that was left is marked.
-fn list(ui: &mut Ui, state: &mut AppState, at: usize) {
-    let text = match state.touring {
-        true => format!("Lesson {} of {}", at + 1, LESSONS.len()),
-        false => "Lessons".to_owned(),
-    };
-    let mut asked = None;
-    let shown =
-        ComboBox::from_id_salt("lessons").selected_text(text).width(104.0).show_ui(ui, |ui| {
-            for (number, lesson) in LESSONS.iter().enumerate() {
-                let text = format!("{}. {}", number + 1, lesson.title);
-                if ui.selectable_label(number == at, text).clicked() {
-                    asked = Some(number);
-                }
-            }
-        });
-    let response = shown.response;
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Lessons"));
-    state.note_control("lessons", response.rect);
-    if let Some(number) = asked {
-        state.visit(number);
-    }
+/// The lesson of that number from 0, or the last one if there are not so many.
+pub(super) fn lesson(at: usize) -> &'static Lesson {
+    &LESSONS[at.min(LESSONS.len() - 1)]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::preferences::LessonPlace;
 
     #[test]
     fn the_pile_of_the_lessons_is_the_one_that_its_command_line_makes() {
@@ -407,9 +234,9 @@ mod tests {
             ..Preferences::default()
         };
         let mut preferences = chosen.clone();
-        preferences.visit(1);
+        preferences.begin_lesson(1, LESSONS[1].choices());
         assert!(!preferences.starts_again && preferences.page.is_none());
-        preferences.visit(99);
+        preferences.begin_lesson(6, LESSONS[6].choices());
         assert_ne!(preferences.quantities, chosen.quantities);
         preferences.put_lesson_away();
         let lesson = LessonPlace { at: LESSONS.len() - 1, on: true, before: None };

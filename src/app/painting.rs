@@ -142,7 +142,7 @@ fn fill_pipeline(
 
 /// The legend that was drawn last, and its size in pixels.
 #[derive(Default)]
-pub(super) struct LegendCache(Option<(Legend, [u32; 2], TextureHandle)>);
+pub(crate) struct LegendCache(Option<(Legend, [u32; 2], TextureHandle)>);
 
 impl LegendCache {
     /// Paints a legend into `rect`, `size` pixels.

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::data_export::DataChoices;
-use super::lessons::LessonPlace;
-use super::panels::Page;
+use super::page::Page;
 use super::plots::ChosenPlot;
 use crate::config::Config;
 #[cfg(feature = "window")]
@@ -132,6 +131,63 @@ impl Preferences {
     }
 }
 
+/// How far someone has come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LessonPlace {
+    /// The lesson, from 0.
+    pub at: usize,
+    /// True while a window that is told nothing else opens there.
+    pub on: bool,
+    /// What was chosen before the lessons, which comes back after them.
+    pub(super) before: Option<Choices>,
+}
+
+impl Default for LessonPlace {
+    fn default() -> Self {
+        Self { at: 0, on: true, before: None }
+    }
+}
+
+/// What a lesson chooses in the place of the user.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Choices {
+    pub quantities: Vec<String>,
+    pub speed: f64,
+    pub full_speed: bool,
+    pub starts_again: bool,
+    pub page: Option<Page>,
+}
+
+impl Choices {
+    /// Puts them into force, and gives those that were.
+    fn swap(self, preferences: &mut Preferences) -> Self {
+        Self {
+            quantities: std::mem::replace(&mut preferences.quantities, self.quantities),
+            speed: std::mem::replace(&mut preferences.speed, self.speed),
+            full_speed: std::mem::replace(&mut preferences.full_speed, self.full_speed),
+            starts_again: std::mem::replace(&mut preferences.starts_again, self.starts_again),
+            page: std::mem::replace(&mut preferences.page, self.page),
+        }
+    }
+}
+
+impl Preferences {
+    /// Begins the lesson of that number from 0, with its choices.
+    pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
+        let replaced = choices.swap(self);
+        let before = self.lesson.before.take().unwrap_or(replaced);
+        self.lesson = LessonPlace { at, on: true, before: Some(before) };
+    }
+
+    /// Brings back the choices from before the lessons.
+    pub(super) fn put_lesson_away(&mut self) {
+        if let Some(before) = self.lesson.before.take() {
+            before.swap(self);
+        }
+    }
+}
+
 /// What is kept.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -142,18 +198,9 @@ pub(crate) struct StoredWindow {
 
 impl StoredWindow {
     /// As it is at present.
-    pub(in crate::app) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
+    pub(super) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
         Self { preferences: preferences.clone(), layout: context.memory(Clone::clone) }
     }
-}
-
-/// The program's folder in the user's folder: `%APPDATA%` on Windows, elsewhere the one that a variable of the environment
-/// names or else the one that lies in their home.
-pub(super) fn user_folder(variable: &str, in_home: &str) -> Option<PathBuf> {
-    let variable = if cfg!(windows) { "APPDATA" } else { variable };
-    let named = std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
-    let home = || std::env::home_dir().map(|home| home.join(in_home));
-    Some(named.or_else(home)?.join("slump"))
 }
 
 #[cfg(test)]

@@ -4,19 +4,17 @@
 //! of the settings, and the moment that was shown. So it opens at once, and the moments between are computed
 //! again, bit for bit, where the timeline asks for them.
 
-use std::path::Path;
-use std::sync::mpsc::channel;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::camera::SceneCamera;
-use super::export::{free_path, not_finite, write_state};
-use super::panels::see::file_stem;
-use super::preferences::{Preferences, StoredWindow};
-use super::state::AppState;
-use super::work::closed;
+use super::file_names::{SESSION_ENDING, STATE_ENDING, free_path, stem};
+use super::preferences::StoredWindow;
+use super::watched_run::TakenRun;
+use crate::config::SavedState;
 use crate::error::{Error, Result};
-use crate::live::{Command, LiveStart};
+use crate::live::LiveStart;
 use crate::output::{Seal, write_file};
 
 /// What files begin with.
@@ -27,9 +25,6 @@ const SEAL: Seal = Seal {
     of: "",
     form: "a session that the window saved",
 };
-
-/// Ending of files that sessions are saved to.
-pub(crate) const SESSION_ENDING: &str = "session";
 
 /// How a window is arranged.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -56,64 +51,37 @@ pub(super) fn arrangement_of(start: &LiveStart) -> Option<Arrangement> {
     ron::from_str(start.window.as_ref()?).ok()
 }
 
-/// Writes a file.
-fn save(start: &LiveStart, path: &Path) -> Result<()> {
+/// Writes a session into a folder: the start with all that it has come to, and how the window is arranged.
+pub(super) fn write_session(
+    folder: &Path,
+    stem: &str,
+    start: LiveStart,
+    arrangement: &Arrangement,
+) -> Result<PathBuf> {
     if start.history.as_ref().is_some_and(|history| history.failure().is_some()) {
         return Err(not_finite());
     }
-    write_file(path, &SEAL.written(start)?)
+    let path = free_path(folder, stem, SESSION_ENDING);
+    let refuse = |error| Error::value("window", "arranged so", format!("written ({error})"));
+    let window = Some(ron::to_string(arrangement).map_err(refuse)?);
+    write_file(&path, &SEAL.written(&LiveStart { window, ..start })?)?;
+    Ok(path)
 }
 
-impl AppState {
-    /// Saves the moment that the selected world has come to.
-    pub(crate) fn save_state(&mut self, context: &egui::Context) {
-        let run = self.take_run(self.selected);
-        self.export_run(context, vec![run], |folder, _, mut runs| {
-            write_state(folder, runs.pop().ok_or_else(closed)?)
-        });
+/// Writes the moment that a run had when it was handed out: it may go on meanwhile.
+pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
+    let TakenRun { start, world } = run;
+    if world.failure.is_some() {
+        return Err(not_finite());
     }
+    let settings = [*world.simulation.settings()];
+    let stem = stem(&start.scene.name, &settings, world.simulation.time_secs());
+    let path = free_path(folder, &stem, STATE_ENDING);
+    SavedState::new(start.scene.clone(), world.simulation, world.tally).save(&path)?;
+    Ok(path)
+}
 
-    /// Saves all worlds with their history, and how the window is arranged.
-    pub(crate) fn save_session(&mut self, context: &egui::Context) {
-        if self.frame.worlds.is_empty() {
-            return;
-        }
-        let stored = StoredWindow::of(&self.preferences, context);
-        let Self { touring, selected, camera, .. } = *self;
-        let arrangement = Arrangement { stored, touring, selected, camera };
-        let (sender, run) = channel();
-        let hand_on = move |start: LiveStart| {
-            // Whoever asked may have gone.
-            let _ = sender.send(start);
-        };
-        self.live.send(Command::TakeAll(Box::new(hand_on)));
-        let stem = file_stem(self);
-        self.export_run(context, vec![run], move |folder, _, mut runs| {
-            let path = free_path(folder, &stem, SESSION_ENDING);
-            let refuse =
-                |error| Error::value("window", "arranged so", format!("written ({error})"));
-            let window = ron::to_string(&arrangement).map_err(refuse)?;
-            let start = LiveStart { window: Some(window), ..runs.pop().ok_or_else(closed)? };
-            save(&start, &path).map(|()| path)
-        });
-    }
-
-    /// Arranges the window as it was when a session was saved. What belongs to this window and its user stays:
-    /// its size, and where files go.
-    pub(super) fn arrange(&mut self, arrangement: Arrangement) {
-        let Arrangement { stored, touring, selected, camera } = arrangement;
-        let Preferences { window_points, folder, .. } = self.preferences.clone();
-        self.preferences = Preferences { window_points, folder, ..stored.preferences };
-        (self.touring, self.selected, self.camera) = (touring, selected, camera);
-        self.opening.layout = Some(stored.layout);
-        self.live.send(Command::SetPace(self.preferences.pace()));
-    }
-
-    /// Puts the panels where they were when a session was saved.
-    pub(super) fn restore_layout(&mut self, context: &egui::Context) {
-        if let Some(layout) = self.opening.layout.take() {
-            context.memory_mut(|memory| memory.data = layout.data);
-            context.set_zoom_factor(layout.options.zoom_factor);
-        }
-    }
+/// Why a run that has failed is not saved.
+fn not_finite() -> Error {
+    Error::value("state", "no longer finite", "an earlier one: drag the timeline back")
 }

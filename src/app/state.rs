@@ -1,111 +1,52 @@
-//! Everything that the user interface reads and changes. Knows neither window nor GPU.
+//! The state of the user interface as a whole, and actions that change more than one of its parts. Knows neither window
+//! nor GPU.
 
-use std::collections::{BTreeMap, VecDeque};
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::channel;
 
-use egui::{Color32, Rect, Ui};
+use egui::{Context, Rect};
 
 use super::camera::SceneCamera;
-use super::data_export::DataPanel;
+use super::context::{PanelContext, Request};
 use super::ensemble::Ensemble;
-use super::export::Printers;
-use super::film::FilmFormat;
-use super::opening::is_saved_run;
-use super::painting::LegendCache;
-use super::panels::distributions::Distributions;
-use super::panels::gallery::Gallery;
-use super::panels::speed::StepRace;
-use super::panels::table::BodyTable;
-use super::panels::trust::RunBudget;
-use super::panels::{Grabbing, GrainRef};
-use super::preferences::Preferences;
-use super::session::arrangement_of;
-use super::theme;
-use super::work::Work;
-use crate::Instant;
-use crate::config::Config;
-use crate::error::Result;
-use crate::live::{Command, Controls, Live, LiveFrame, WorldFrame};
-use crate::sim::Settings;
+use super::exports::Exports;
+use super::lessons::LESSONS;
+use super::notice::Notice;
+use super::opening::Opening;
+use super::panels::Panels;
+use super::preferences::{Preferences, StoredWindow};
+use super::session::{Arrangement, arrangement_of, write_session, write_state};
+use super::watched_run::WatchedRun;
+use super::work::closed;
+use crate::config::{Config, SavedState};
+use crate::live::{Command, Live, LiveStart};
 
 /// The state of the user interface.
 pub struct AppState {
-    /// The solver's thread.
-    pub live: Live,
-    /// Its newest frame.
-    pub frame: LiveFrame,
-    /// What the controls show, one entry a world: ahead of the frame by what is on its way.
-    pub(crate) wanted: Vec<Controls>,
-    /// The world that the controls are about.
-    pub(crate) selected: usize,
-    /// What was loaded last.
-    pub(crate) config: Config,
-    pub(super) opening: OpeningState,
+    /// The run that is shown.
+    pub run: WatchedRun,
     /// What outlives the window.
     pub preferences: Preferences,
     /// Which part of the scene shows.
     pub camera: SceneCamera,
-    /// What the mouse has chosen and holds.
-    pub mouse: Grabbing,
-    /// What a slider of the front is being dragged to, and in which world.
-    pub(crate) draft: Option<(usize, Settings)>,
     /// True in a lesson.
     pub touring: bool,
-    pub(crate) shown: Shown,
-    pub(crate) exports: Exports,
     /// What the present settings make of other piles.
     pub ensemble: Ensemble,
-    pub(crate) distributions: Distributions,
-    pub(crate) race: Option<StepRace>,
-    pub(crate) budget: Option<RunBudget>,
     /// Where controls lie, points: for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
-}
-
-/// What is being opened.
-#[derive(Default)]
-pub(super) struct OpeningState {
+    /// The panels, with the state that each has to itself.
+    pub panels: Panels,
+    /// Set if the window is to open its graphics device again.
+    pub(crate) restart_graphics: bool,
+    notice: Option<Notice>,
+    exports: Exports,
     /// How the panels of a session that is being opened lay.
-    pub layout: Option<egui::Memory>,
+    layout: Option<egui::Memory>,
     seen_loads: u64,
     seen_refusal: Option<Arc<str>>,
-}
-
-/// What shows beside the run.
-#[derive(Default)]
-pub(crate) struct Shown {
-    pub help: bool,
-    /// True while the list behind "Can I trust this?" is open.
-    pub trust: bool,
-    /// Set where the window is to open its graphics device anew.
-    pub restart_graphics: bool,
-    pub(super) legend: LegendCache,
-    pub(super) gallery: Gallery,
-    /// How many starts there were before the present lesson's.
-    pub(super) loads_before_lesson: u64,
-    pub(super) table: BodyTable,
-    notice: Option<Notice>,
-}
-
-/// What is being written. None of it keeps the window waiting.
-#[derive(Default)]
-pub(crate) struct Exports {
-    /// Files that are written, one after another.
-    pub files: VecDeque<Work<PathBuf>>,
-    pub printers: Arc<Mutex<Printers>>,
-    pub data: DataPanel,
-    pub film: Option<(FilmFormat, Work<String>)>,
-    /// A link that is to be copied, and whether something was changed by hand that it does not tell.
-    pub link: Option<Work<(String, bool)>>,
-}
-
-impl Drop for Exports {
-    fn drop(&mut self) {
-        self.files.iter_mut().for_each(Work::end);
-        self.film.iter_mut().for_each(|(_, work)| work.end());
-        self.data.export.iter_mut().for_each(Work::end);
-    }
 }
 
 impl AppState {
@@ -119,206 +60,211 @@ impl AppState {
     /// The same, with nothing loaded.
     pub(crate) fn idle(live: Live, preferences: Preferences) -> Self {
         let mut state = Self {
-            live,
-            frame: LiveFrame::default(),
-            wanted: Vec::new(),
-            selected: 0,
-            config: Config::default(),
-            opening: OpeningState::default(),
+            run: WatchedRun::new(live),
             preferences,
             camera: SceneCamera::default(),
-            mouse: Grabbing::default(),
-            draft: None,
             touring: false,
-            shown: Shown::default(),
-            exports: Exports::default(),
             ensemble: Ensemble::new(),
-            distributions: Distributions::default(),
-            race: None,
-            budget: None,
             controls: BTreeMap::new(),
+            panels: Panels::default(),
+            restart_graphics: false,
+            notice: None,
+            exports: Exports::default(),
+            layout: None,
+            seen_loads: 0,
+            seen_refusal: None,
         };
         // A window that was closed in a lesson and is opened for something else has the user's own choices.
         state.preferences.put_lesson_away();
-        state.live.send(Command::SetPace(state.preferences.pace()));
+        state.set_pace();
         state
+    }
+
+    /// The context that the panels share, and the panels.
+    pub(super) fn split(&mut self) -> (PanelContext<'_>, &mut Panels) {
+        let context = PanelContext {
+            run: &mut self.run,
+            preferences: &mut self.preferences,
+            camera: &mut self.camera,
+            ensemble: &self.ensemble,
+            exports: &mut self.exports,
+            notice: &mut self.notice,
+            controls: &mut self.controls,
+            touring: self.touring,
+            requests: Vec::new(),
+        };
+        (context, &mut self.panels)
+    }
+
+    /// Carries out the request of a panel.
+    pub(super) fn carry_out(&mut self, context: &Context, request: Request) {
+        match request {
+            Request::Load(config) => self.load(*config),
+            Request::LoadSaved(path) => self.load_saved(&path),
+            Request::Visit(at) => self.visit(at),
+            Request::LeaveLessons => self.leave_lessons(),
+            Request::SaveState => self.save_state(context),
+            Request::SaveSession => self.save_session(context),
+            Request::CopyLink => self.copy_link(context),
+        }
     }
 
     /// True while a file or a recording is being written.
     pub fn is_writing(&self) -> bool {
-        let Exports { files, data, film, .. } = &self.exports;
-        !files.is_empty() || data.export.is_some() || film.is_some()
+        self.exports.is_writing()
     }
 
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
-    pub(crate) fn refresh(&mut self) {
-        self.frame = self.live.latest().clone();
+    pub(super) fn refresh(&mut self, context: &Context) {
+        self.run.frame = self.run.live.latest().clone();
         self.follow_loads();
         // The same words again are another refusal.
         let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
-        if address(&self.frame.refusal) != address(&self.opening.seen_refusal) {
-            self.opening.seen_refusal.clone_from(&self.frame.refusal);
-            if let Some(refusal) = self.frame.refusal.clone() {
+        if address(&self.run.frame.refusal) != address(&self.seen_refusal) {
+            self.seen_refusal.clone_from(&self.run.frame.refusal);
+            if let Some(refusal) = self.seen_refusal.clone() {
                 self.warn(refusal.to_string());
             }
         }
-        let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
-        if in_step || self.wanted.len() != self.frame.worlds.len() {
-            self.wanted = self.frame.worlds.iter().map(|world| world.controls).collect();
+        self.run.follow_frame();
+        if let Some(settings) = self.run.wanted_settings().filter(|_| !self.touring) {
+            self.preferences.scene = self.run.config.clone().with_settings(&settings);
         }
-        if let Some((world, settings)) = self.draft
-            && let Some(wanted) = self.wanted.get_mut(world)
-        {
-            wanted.settings = settings;
+        self.panels.scene.follow(&self.run);
+        if let Some(notice) = self.exports.follow(context) {
+            self.notice = Some(notice);
         }
-        if let Some(wanted) = self.wanted.get(self.selected).filter(|_| !self.touring) {
-            self.preferences.scene = self.config.clone().with_settings(&wanted.settings);
-        }
-        let worlds = self.frame.worlds.len();
-        self.selected = self.selected.min(worlds.saturating_sub(1));
-        let exists = |&GrainRef { world, grain }: &GrainRef| {
-            let world = self.frame.worlds.get(world);
-            world.is_some_and(|world| grain < world.snapshot.grains.len())
-        };
-        self.mouse.pinned = self.mouse.pinned.filter(exists);
-        self.mouse.grabbed = self.mouse.grabbed.filter(exists);
-        self.note_exports();
+        self.ensemble.follow(context, &self.run.frame, self.preferences.ensemble);
     }
 
-    /// Begins anew with a start that was not there before.
+    /// Begins again with a start that was not there before.
     fn follow_loads(&mut self) {
-        if self.frame.loads == self.opening.seen_loads {
+        if self.run.frame.loads == self.seen_loads {
             return;
         }
-        self.opening.seen_loads = self.frame.loads;
+        self.seen_loads = self.run.frame.loads;
         self.camera.frame_scene();
-        self.mouse.pinned = None;
+        (self.run.pinned, self.run.draft) = (None, None);
         self.exports.data.stretch = None;
-        self.race = None;
-        self.draft = None;
-        if let Some(start) = self.frame.start.clone() {
-            self.config.clone_from(&start.config);
+        self.panels.pages.forget_race();
+        if let Some(start) = self.run.frame.start.clone() {
+            self.run.config.clone_from(&start.config);
             if let Some(arrangement) = arrangement_of(&start) {
                 self.arrange(arrangement);
             }
         }
     }
 
-    /// Says what became of exports that have ended.
-    fn note_exports(&mut self) {
-        if let Some(outcome) = self.exports.files.front().and_then(Work::outcome) {
-            self.exports.files.pop_front();
-            // A run that was just saved is the one that is likely to be opened.
-            if let Some(path) = outcome.as_ref().ok().filter(|path| is_saved_run(path)) {
-                self.exports.data.saved_run = path.display().to_string();
-            }
-            // Where the program was started is not where its user looks.
-            let whole = |path: PathBuf| std::path::absolute(&path).unwrap_or(path);
-            self.say(Notice::of(outcome.map(|path| format!("Saved {}", whole(path).display()))));
-        }
-        if let Some(outcome) = self.exports.film.as_ref().and_then(|(_, work)| work.outcome()) {
-            self.exports.film = None;
-            self.say(Notice::of(outcome));
-        }
-        if let Some(outcome) = self.exports.data.export.as_ref().and_then(Work::outcome) {
-            self.exports.data.export = None;
-            let notice = Notice::of(outcome);
-            self.exports.data.told = Some(notice.clone());
-            self.say(notice);
-        }
-    }
-
-    /// The world that the controls are about, once there is one.
-    pub fn world(&self) -> Option<&WorldFrame> {
-        self.frame.worlds.get(self.selected)
-    }
-
-    /// True where what is open is a heap, of which slump tells.
-    pub(crate) fn slumps(&self) -> bool {
-        self.frame.start.as_ref().is_some_and(|start| start.slumps)
-    }
-
-    /// True while worlds are compared.
-    pub(crate) fn compares(&self) -> bool {
-        self.frame.worlds.len() > 1
-    }
-
-    /// Changes the settings of a world.
-    pub fn change(&mut self, world: usize, settings: Settings) {
-        if let Some(wanted) = self.wanted.get_mut(world) {
-            wanted.settings = settings;
-            self.live.send(Command::Change(world, settings));
-        }
-    }
-
     /// Says in the status bar for a while what went wrong.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
-        self.say(Notice::new(text, true));
-    }
-
-    /// Says something in the status bar for a while.
-    pub(super) fn say(&mut self, notice: Notice) {
-        self.shown.notice = Some(notice);
+        self.notice = Some(Notice::new(text, true));
     }
 
     /// What the status bar has to say, and for how long yet, s.
     pub fn notice(&self) -> Option<(&Notice, f32)> {
-        let notice = self.shown.notice.as_ref()?;
-        let left_secs = NOTICE_SECS - notice.since.elapsed().as_secs_f32();
-        (left_secs > 0.0).then_some((notice, left_secs))
+        let notice = self.notice.as_ref()?;
+        Some((notice, notice.left_secs()?))
     }
 
-    /// Notes where a control lies.
-    pub(crate) fn note_control(&mut self, name: &str, rect: Rect) {
-        self.controls.insert(name.to_owned(), rect);
+    fn set_pace(&mut self) {
+        self.run.live.send(Command::SetPace(self.preferences.pace()));
     }
 
-    /// Releases, plays or pauses.
-    pub(crate) fn toggle_play(&mut self) {
-        let command = if self.frame.playing { Command::Pause } else { Command::Play };
-        self.live.send(command);
+    /// Opens a scene.
+    pub fn load(&mut self, config: Config) {
+        self.run.config = config.clone();
+        self.open(Opening::Scene(Box::new(config)));
     }
 
-    /// Takes one step and pauses.
-    pub fn step(&mut self) {
-        self.live.send(Command::Step);
+    /// Opens a saved run, to go on with it.
+    pub fn load_run(&mut self, state: SavedState) {
+        self.open(Opening::Run(Box::new(state)));
     }
 
-    /// Goes one step back in the recording.
-    pub(crate) fn step_back(&mut self) {
-        let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
-        let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
-        self.live.send(Command::Seek(time_secs.max(0.0)));
-    }
-}
-
-/// How long a notice stays, s.
-const NOTICE_SECS: f32 = 8.0;
-
-/// A sentence for the status bar.
-#[derive(Clone, Debug)]
-pub struct Notice {
-    /// The sentence.
-    pub text: String,
-    failure: bool,
-    since: Instant,
-}
-
-impl Notice {
-    /// One that begins now.
-    pub(super) fn new(text: impl Into<String>, failure: bool) -> Self {
-        Self { text: text.into(), failure, since: Instant::now() }
+    /// Opens the file of a saved run or of a session, to go on with it.
+    pub fn load_saved(&mut self, path: &Path) {
+        self.exports.data.saved_run = path.display().to_string();
+        self.open(Opening::File(path.to_owned()));
     }
 
-    /// Of what became of something, which begins now.
-    fn of(outcome: Result<String>) -> Self {
-        let failure = outcome.is_err();
-        Self::new(outcome.unwrap_or_else(|error| error.to_string()), failure)
+    /// Has a start made where the run is computed. Other than for a lesson, lessons are left.
+    pub(crate) fn open(&mut self, opening: Opening) {
+        if !matches!(opening, Opening::Lesson(_)) {
+            self.leave_lessons();
+        }
+        self.run.live.send(Command::Load(Box::new(opening)));
     }
 
-    /// Its colour.
-    pub(super) fn colour(&self, ui: &Ui) -> Color32 {
-        let dark = ui.visuals().dark_mode;
-        if self.failure { theme::warning(dark) } else { theme::good(dark) }
+    /// Goes to a lesson, or to the last one if there are not so many.
+    pub fn visit(&mut self, at: usize) {
+        let at = at.min(LESSONS.len() - 1);
+        self.preferences.begin_lesson(at, LESSONS[at].choices());
+        self.touring = true;
+        self.panels.lesson_bar.loads_before = self.run.frame.loads;
+        self.set_pace();
+        self.open(Opening::Lesson(at));
+    }
+
+    /// Ends the lessons, with the worlds as they are.
+    fn leave_lessons(&mut self) {
+        if std::mem::take(&mut self.touring) {
+            self.preferences.put_lesson_away();
+            self.preferences.lesson.on = false;
+            self.set_pace();
+        }
+    }
+
+    /// Saves the moment that the selected world has come to.
+    fn save_state(&mut self, context: &Context) {
+        let run = self.run.take(self.run.selected);
+        self.exports.write(context, &self.preferences.folder, vec![run], |folder, _, runs| {
+            write_state(folder, runs.into_iter().next().ok_or_else(closed)?)
+        });
+    }
+
+    /// Saves all worlds with their history, and how the window is arranged.
+    pub(super) fn save_session(&mut self, context: &Context) {
+        if self.run.frame.worlds.is_empty() {
+            return;
+        }
+        let stored = StoredWindow::of(&self.preferences, context);
+        let (touring, selected, camera) = (self.touring, self.run.selected, self.camera);
+        let arrangement = Arrangement { stored, touring, selected, camera };
+        let (sender, run) = channel();
+        let hand_on = move |start: LiveStart| {
+            // Whoever asked may have gone.
+            let _ = sender.send(start);
+        };
+        self.run.live.send(Command::TakeAll(Box::new(hand_on)));
+        let stem = self.run.file_stem();
+        let folder = &self.preferences.folder;
+        self.exports.write(context, folder, vec![run], move |folder, _, runs| {
+            let start = runs.into_iter().next().ok_or_else(closed)?;
+            write_session(folder, &stem, start, &arrangement)
+        });
+    }
+
+    /// Has the link of the present moment of all worlds copied.
+    pub fn copy_link(&mut self, context: &Context) {
+        self.exports.copy_link(context, self.run.take_all());
+    }
+
+    /// Arranges the window as it was when a session was saved. What belongs to this window and its user stays:
+    /// its size, and where files go.
+    fn arrange(&mut self, arrangement: Arrangement) {
+        let Arrangement { stored, touring, selected, camera } = arrangement;
+        let Preferences { window_points, folder, .. } = self.preferences.clone();
+        self.preferences = Preferences { window_points, folder, ..stored.preferences };
+        (self.touring, self.run.selected, self.camera) = (touring, selected, camera);
+        self.layout = Some(stored.layout);
+        self.set_pace();
+    }
+
+    /// Puts the panels where they were when a session was saved.
+    pub(super) fn restore_layout(&mut self, context: &Context) {
+        if let Some(layout) = self.layout.take() {
+            context.memory_mut(|memory| memory.data = layout.data);
+            context.set_zoom_factor(layout.options.zoom_factor);
+        }
     }
 }

@@ -11,35 +11,35 @@ pub(super) fn told(
     scale: f32,
     devices: u32,
 ) -> serde_json::Value {
-    let world = state.world();
+    let world = state.run.world();
     let last = world.map(|world| world.snapshot.observables).unwrap_or_default();
     let edges = |rect: &egui::Rect| {
         [rect.left(), rect.top(), rect.right(), rect.bottom()].map(|at| at * scale)
     };
     let controls = state.controls.iter().map(|(name, rect)| (name, edges(rect)));
     serde_json::json!({
-        "scene": state.frame.start.as_ref().map(|start| start.scene.name.as_str()),
-        "playing": state.frame.playing,
-        "loading": state.frame.loading.is_some(),
+        "scene": state.run.frame.start.as_ref().map(|start| start.scene.name.as_str()),
+        "playing": state.run.frame.playing,
+        "loading": state.run.frame.loading.is_some(),
         "step": last.step,
         "time_secs": last.time_secs,
         "slump": last.slump,
         "state_hash": world.map(|world| world.snapshot.state_hash()),
         // Of the next step, as the solver's thread has them.
         "parameters": world.map(|world| world.controls.settings.parameters),
-        "worlds": state.frame.worlds.len(),
+        "worlds": state.run.frame.worlds.len(),
         // Of the selected world.
         "grains": world.map_or(0, |world| world.snapshot.grains.len()),
         // Those of the selected world that have come to their end, and threads that compute them.
-        "other_piles": state.ensemble.summary(state.selected).map_or(0, |it| it.band.count),
+        "other_piles": state.ensemble.summary(state.run.selected).map_or(0, |it| it.band.count),
         "other_threads": state.ensemble.threads(),
         // From 1; 0 where none is being taken.
         "lesson": if state.touring { state.preferences.lesson.at + 1 } else { 0 },
-        "steps_per_sec": state.frame.steps_per_sec,
+        "steps_per_sec": state.run.frame.steps_per_sec,
         // How often a graphics device was opened.
         "devices": devices,
         // That the solver's thread has published.
-        "frames": state.frame.number,
+        "frames": state.run.frame.number,
         "window": size,
         // Left, top, right and bottom, pixels of the window.
         "controls": controls.collect::<BTreeMap<_, _>>(),

@@ -178,6 +178,13 @@ impl<T> Work<T> {
     }
 }
 
+/// The outcome of work that has ended, which is forgotten.
+pub(super) fn outcome_of_ended<T: Send + 'static>(work: &mut Option<Work<T>>) -> Option<Result<T>> {
+    let outcome = work.as_ref()?.outcome()?;
+    *work = None;
+    Some(outcome)
+}
+
 impl<T> Drop for Work<T> {
     fn drop(&mut self) {
         self.cancel();

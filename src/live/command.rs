@@ -1,34 +1,11 @@
-//! What can be asked of a live run, and what it begins with.
+//! The commands of a live run.
 
 use std::sync::Arc;
 
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{RunHistory, WorldHistory, source_to_bytes};
-use crate::config::Config;
-use crate::error::Result;
-use crate::scene::Scene;
-use crate::sim::{Edit, Pull, Settings, Simulation, Snapshot, Tally};
-use crate::world::{Boundary, Physics};
-
-/// Hears how far a start has come. False where it is given up.
-pub type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
-
-/// What makes a start, as data, so that it can be sent to where the run is computed.
-pub trait StartSource: Send + 'static {
-    /// Makes it where the run is computed. Gives up with an error where `tell` returns false.
-    ///
-    /// # Errors
-    /// Says why there is none.
-    fn make(self: Box<Self>, tell: Tell<'_>) -> Result<LiveStart>;
-
-    /// It as bytes, from which its kind reads it back.
-    ///
-    /// # Errors
-    /// Where it cannot be sent.
-    fn to_bytes(&self) -> Result<Vec<u8>>;
-}
+use super::{LiveStart, StartSource, WorldHistory};
+use crate::sim::{Edit, Pull, Settings};
 
 /// Takes down what a world has come to, with the start. It runs on the solver's thread, so it hands on what it gets and
 /// does not work with it.
@@ -112,103 +89,5 @@ impl Command {
     /// True if it needs a state that a seek is still computing.
     pub(super) fn waits_for_seek(&self) -> bool {
         self.is_about_the_moment() || matches!(self, Self::Play | Self::Reset | Self::Return(..))
-    }
-}
-
-/// The state that a run starts from.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LiveStart {
-    /// The scene, before anything moves. The run pauses once at its duration; played on, it goes further.
-    pub scene: Scene,
-    /// What opens that scene again.
-    #[serde(with = "as_json")]
-    pub config: Config,
-    /// How the window was arranged that saved it, in that window's own words; none where none did.
-    pub window: Option<String>,
-    /// The world at t = 0, or where a saved run goes on.
-    pub simulation: Simulation,
-    /// Sums over the steps before that.
-    pub tally: Tally,
-    /// Shapes that are drawn before the first step: what holds a state that is at rest.
-    pub held_by: Vec<Boundary>,
-    /// Lower left and upper right corner of what pictures show, m.
-    pub view: [DVec2; 2],
-    /// True if it is one of a heap on level ground, of which slump tells.
-    pub slumps: bool,
-    /// The settings of the worlds that are side by side at first; none for one world with those of the simulation.
-    pub worlds: Vec<Settings>,
-    /// What it has come to, where it does not begin here; then `worlds` means nothing.
-    #[serde(rename = "record")]
-    pub history: Option<RunHistory>,
-}
-
-impl LiveStart {
-    /// The settings that the scene states.
-    pub fn settings(&self) -> &Settings {
-        self.simulation.settings()
-    }
-
-    /// The physics that the scene computes.
-    pub fn physics(&self) -> Physics {
-        self.simulation.physics()
-    }
-}
-
-/// One that is ready.
-impl StartSource for LiveStart {
-    fn make(self: Box<Self>, _: Tell<'_>) -> Result<LiveStart> {
-        Ok(*self)
-    }
-
-    fn to_bytes(&self) -> Result<Vec<u8>> {
-        source_to_bytes(self)
-    }
-}
-
-/// A config reads its options by name, which binary forms do not have.
-pub(crate) mod as_json {
-    use serde::de::Error as _;
-    use serde::ser::Error as _;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    use crate::config::Config;
-
-    pub(crate) fn serialize<S: Serializer>(config: &Config, to: S) -> Result<S::Ok, S::Error> {
-        serde_json::to_string(config).map_err(S::Error::custom)?.serialize(to)
-    }
-
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>, C: From<Config>>(
-        from: D,
-    ) -> Result<C, D::Error> {
-        let config: Config =
-            serde_json::from_str(&String::deserialize(from)?).map_err(D::Error::custom)?;
-        Ok(config.into())
-    }
-}
-
-/// How far a long preparation has come.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LoadingProgress {
-    /// 0 … 1.
-    pub part: f32,
-    /// One line.
-    pub text: String,
-    /// How what is being made looks, where there is anything to see.
-    pub preview: Option<Preview>,
-}
-
-/// What is being made, at one moment. It is shown, and no more: the worlds stay as they are.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Preview {
-    /// The moment.
-    pub snapshot: Arc<Snapshot>,
-    /// Lower left and upper right corner of what there is to see, m.
-    pub view: [DVec2; 2],
-}
-
-impl PartialEq for Preview {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.snapshot, &other.snapshot)
     }
 }

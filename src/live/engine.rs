@@ -426,7 +426,7 @@ impl Engine {
         if let Some(start) = &self.start
             && !all.is_empty()
         {
-            self.history.restart(start, all);
+            self.history.restart(&start.simulation, start.tally, all);
             self.mode = Mode::Paused;
         }
     }

@@ -1,42 +1,17 @@
 //! The side of a live run that a window holds.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Duration;
 
 use triple_buffer::{Output, triple_buffer};
 
 use super::engine::Engine;
 use super::remote::{Ask, RemoteRun};
-use super::{Command, LiveFrame};
+use super::{Command, LiveFrame, LiveOptions};
 use crate::error::{Error, Result};
 
 /// Stack of the solver's thread, bytes: reading a session takes frames of half a megabyte, one for each level of what it
 /// holds, and came to more than the two megabytes that a thread has by itself. What is not used takes no memory.
 const STACK_BYTES: usize = 32 << 20;
-
-/// What the solver's thread is to do for its window.
-pub struct LiveOptions {
-    /// Called on the solver's thread after each new frame.
-    pub wake: Box<dyn Fn() + Send>,
-    /// Asked while a start is made: true where that is to be given up, though no command could come in meanwhile.
-    pub gives_up: Box<dyn Fn() -> bool + Send>,
-    /// Least time between two frames while the run goes on.
-    pub frame_interval: Duration,
-    /// Memory for keyframes, of all worlds together.
-    pub recording_bytes: usize,
-}
-
-impl Default for LiveOptions {
-    /// Nobody to wake, 60 frames a second, 96 MiB.
-    fn default() -> Self {
-        Self {
-            wake: Box::new(|| {}),
-            gives_up: Box::new(|| false),
-            frame_interval: Duration::from_micros(16_600),
-            recording_bytes: 96 << 20,
-        }
-    }
-}
 
 /// A run that goes on by itself. Dropped, it ends after the step that it is computing.
 pub struct Live {

@@ -8,7 +8,7 @@ use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 
 use super::stored_moments::{STORED_BYTES, StoredMoments};
-use super::{Controls, Curve, LiveOptions, LiveStart, LoadingProgress, WorldHistory};
+use super::{Controls, Curve, LiveOptions, LoadingProgress, Tell, WorldHistory};
 use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
@@ -263,10 +263,9 @@ impl RunHistory {
     }
 
     /// Puts worlds at a start, one for each of these settings. The present ones are kept.
-    pub(super) fn restart(&mut self, start: &LiveStart, all: &[Settings]) {
-        let world = |settings: &Settings| {
-            WorldHistory::new(&start.simulation, start.tally, settings, self.recording_bytes)
-        };
+    pub(super) fn restart(&mut self, start: &Simulation, tally: Tally, all: &[Settings]) {
+        let world =
+            |settings: &Settings| WorldHistory::new(start, tally, settings, self.recording_bytes);
         let worlds = all.iter().map(world).collect();
         let mut run = LiveRun { worlds, ..LiveRun::default() };
         run.keep_within(self.recording_bytes);
@@ -375,7 +374,7 @@ impl RunHistory {
         start: &Simulation,
         tally: Tally,
         plans: &[WorldPlan],
-        tell: &mut dyn FnMut(LoadingProgress) -> bool,
+        tell: Tell<'_>,
     ) -> Result<Self> {
         let bytes = LiveOptions::default().recording_bytes / plans.len().max(1);
         let mut planned = Vec::with_capacity(plans.len());

@@ -11,23 +11,29 @@ mod engine;
 mod frame;
 mod handle;
 mod history;
+mod loading;
+mod message;
 mod mode;
+mod options;
 mod record;
 mod remote;
+mod start;
 mod stored_moments;
 mod world_history;
 
 #[cfg(feature = "panels")]
 pub(crate) use clock::receive_within;
-#[cfg(feature = "panels")]
-pub(crate) use command::as_json;
-pub use command::{
-    Command, LiveStart, LoadingProgress, Pace, Preview, StartSource, StartTaker, Taker, Tell,
-};
+pub use command::{Command, Pace, StartTaker, Taker};
 pub use curve::Curve;
 pub use frame::{LiveFrame, WorldAlarm, WorldFrame};
-pub use handle::{Live, LiveOptions};
+pub use handle::Live;
 pub use history::{PastRun, PastWorld, RunHistory, WorldPlan};
+pub use loading::{LoadingProgress, Preview, Tell};
+pub use message::to_bytes;
+pub use options::LiveOptions;
 pub use record::{Controls, ControlsChange, HandEdit, WorldRecord};
-pub use remote::{Ask, Post, RemoteEngine, source_to_bytes};
+pub use remote::{Ask, Post, RemoteEngine};
+#[cfg(feature = "panels")]
+pub(crate) use start::as_json;
+pub use start::{LiveStart, StartSource};
 pub use world_history::WorldHistory;

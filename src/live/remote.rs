@@ -17,6 +17,7 @@ use triple_buffer::{Output, triple_buffer};
 
 use super::curve::CurveChange;
 use super::engine::Engine;
+use super::message::{from_bytes, to_bytes};
 use super::{
     Command, Curve, LiveFrame, LiveOptions, LiveStart, PastRun, StartSource, StartTaker, Taker,
     WorldHistory,
@@ -82,16 +83,6 @@ impl FrameChange {
     }
 }
 
-fn written(message: &impl Serialize) -> Result<Vec<u8>> {
-    rmp_serde::to_vec_named(message)
-        .map_err(|error| Error::value("message", error, "one that can be written"))
-}
-
-fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
-    rmp_serde::from_slice(bytes)
-        .map_err(|error| Error::value("message", error, "one of the same program"))
-}
-
 /// Who waits for what is taken down.
 enum Waiting {
     World(Taker),
@@ -136,7 +127,7 @@ impl RemoteRun {
 
     pub(super) fn latest(&mut self) -> &LiveFrame {
         while let Ok(bytes) = self.inbox.try_recv() {
-            match read(&bytes) {
+            match from_bytes(&bytes) {
                 Ok(Reply::Frame(change)) => {
                     self.frame = change.after(std::mem::take(&mut self.frame));
                     self.ask(&Request::Seen, false);
@@ -158,7 +149,7 @@ impl RemoteRun {
     }
 
     fn ask(&mut self, request: &Request, interrupts: bool) {
-        match written(request) {
+        match to_bytes(request) {
             Ok(bytes) => (self.ask)(bytes, interrupts),
             Err(refusal) => self.refuse(refusal),
         }
@@ -197,7 +188,7 @@ impl FramePoster {
 
     fn reply(&mut self, reply: &Reply) {
         // Plain data: there is nothing in it that could not be written.
-        if let Ok(bytes) = written(reply) {
+        if let Ok(bytes) = to_bytes(reply) {
             (self.post)(bytes);
         }
     }
@@ -235,10 +226,10 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
     /// Where it is none.
     pub fn receive(&mut self, message: &[u8]) -> Result<()> {
         let poster = Arc::clone(&self.poster);
-        let (number, command) = match read(message)? {
+        let (number, command) = match from_bytes(message)? {
             Request::Command(number, command) => (number, command),
             Request::Load(number, bytes) => {
-                let source: S = read(&bytes)?;
+                let source: S = from_bytes(&bytes)?;
                 (number, Command::Load(Box::new(source)))
             }
             Request::Take(number, world) => {
@@ -273,12 +264,4 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
 
 fn lock(poster: &Mutex<FramePoster>) -> std::sync::MutexGuard<'_, FramePoster> {
     poster.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A source of starts as bytes.
-///
-/// # Errors
-/// Where it holds what cannot be written.
-pub fn source_to_bytes(source: &impl Serialize) -> Result<Vec<u8>> {
-    written(source)
 }

@@ -1,13 +1,9 @@
-//! Colours in gamma space, the numbers that a PNG file stores divided by 255, and what they stand for.
+//! Colours in gamma space: the numbers that a PNG file stores, divided by 255.
 //!
 //! All blending happens on these numbers, on every renderer, so that pictures look the same everywhere and a
 //! half-covered edge pixel is the plain mean of its two sides.
 
 use serde::{Deserialize, Serialize};
-
-use super::numbers::{round_above, si_prefix};
-use super::{ColourBy, Style};
-use crate::sim::{GrainView, Snapshot};
 
 /// Red, green, blue and opacity, each 0 … 1, not premultiplied.
 #[repr(C)]
@@ -90,9 +86,6 @@ const VIRIDIS: [Colour; 9] = [
     Colour::hex(0xfde725),
 ];
 
-/// Numbers of contacts from here on share one colour.
-pub(super) const MOST_CONTACTS: u32 = 6;
-
 /// The colour at `part` of the map; what lies outside 0 … 1 takes the colour of the end.
 pub(crate) fn map_colour(part: f64) -> Colour {
     // A value that is not a number would index nothing.
@@ -100,81 +93,6 @@ pub(crate) fn map_colour(part: f64) -> Colour {
     let place = part * (VIRIDIS.len() - 1) as f64;
     let below = (place as usize).min(VIRIDIS.len() - 2);
     VIRIDIS[below].mix(VIRIDIS[below + 1], (place - below as f64) as f32)
-}
-
-/// A quantity and the values at the two ends of its colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ColourScale {
-    pub colour_by: ColourBy,
-    /// Value at the lower end, in the unit that [`ColourBy`] states.
-    pub low: f64,
-    pub high: f64,
-}
-
-impl ColourScale {
-    /// The scale that a style asks for: its own range, or one that holds the whole snapshot.
-    pub(crate) fn new(style: &Style, snapshot: &Snapshot) -> Self {
-        let (low, high) = match (style.colour_by, style.range) {
-            (ColourBy::Coordination, _) => (0.0, f64::from(MOST_CONTACTS)),
-            (_, Some(range)) => range,
-            (colour_by, None) => automatic_range(colour_by, snapshot),
-        };
-        Self { colour_by: style.colour_by, low, high }
-    }
-
-    /// The colour of a grain. `mean_diameter` in m.
-    pub(crate) fn colour(&self, grain: &GrainView, mean_diameter: f64) -> Colour {
-        match self.colour_by {
-            ColourBy::PaperGreys => Colour::grey(grain.tone),
-            ColourBy::Coordination => contact_colour(grain.coordination),
-            _ => {
-                let span = self.high - self.low;
-                let above = quantity(self.colour_by, grain, mean_diameter) - self.low;
-                map_colour(if span > 0.0 { above / span } else { 0.0 })
-            }
-        }
-    }
-
-    /// What the legend calls the quantity, and what its numbers are multiplied by.
-    pub(crate) fn label(&self) -> (String, f64) {
-        let (prefix, factor) = si_prefix(self.low.abs().max(self.high.abs()));
-        match self.colour_by {
-            ColourBy::PaperGreys => (String::new(), 1.0),
-            ColourBy::Speed => (format!("speed ({prefix}m/s)"), 1.0 / factor),
-            ColourBy::Overlap => ("overlap (% of d)".to_owned(), 100.0),
-            ColourBy::Force => (format!("force ΣN ({prefix}N)"), 1.0 / factor),
-            ColourBy::Coordination => ("contacts".to_owned(), 1.0),
-        }
-    }
-}
-
-pub(crate) fn contact_colour(contacts: u32) -> Colour {
-    map_colour(f64::from(contacts.min(MOST_CONTACTS)) / f64::from(MOST_CONTACTS))
-}
-
-/// A range from zero to a round number that holds every grain of the snapshot. An animation takes
-/// the largest over its frames.
-pub(crate) fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64, f64) {
-    let mean_diameter = snapshot.surroundings.mean_diameter;
-    let largest = snapshot
-        .grains
-        .iter()
-        .map(|grain| quantity(colour_by, grain, mean_diameter))
-        .filter(|value| value.is_finite())
-        .fold(0.0, f64::max);
-    // Nothing moves, overlaps or presses: any scale shows it at its lower end.
-    let idle = if colour_by == ColourBy::Overlap { 0.01 } else { 1.0 };
-    (0.0, if largest > 0.0 { round_above(largest) } else { idle })
-}
-
-fn quantity(colour_by: ColourBy, grain: &GrainView, mean_diameter: f64) -> f64 {
-    match colour_by {
-        ColourBy::PaperGreys => f64::from(grain.tone),
-        ColourBy::Speed => grain.velocity.length(),
-        ColourBy::Overlap => grain.overlap / mean_diameter,
-        ColourBy::Force => grain.force,
-        ColourBy::Coordination => f64::from(grain.coordination),
-    }
 }
 
 #[cfg(test)]

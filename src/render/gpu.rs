@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use image::RgbaImage;
 
 use super::painter::{Painter, PictureArea};
-use super::renderer::GpuKind;
+use super::renderer_choice::GpuKind;
 use super::{Colour, Picture};
 use crate::error::{Error, Result};
 

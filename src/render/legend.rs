@@ -4,7 +4,8 @@
 
 use image::{RgbaImage, imageops};
 
-use super::colour::{ColourScale, MOST_CONTACTS, contact_colour, map_colour};
+use super::colour::map_colour;
+use super::colour_scale::{ColourScale, MOST_CONTACTS, contact_colour};
 use super::numbers::{decimal, length, round_below, si_prefix, ticks};
 use super::overlays::{force_reference, full_half_width_px, full_length, speed_reference};
 use super::text::{Align, TextBlock, TextStyle};

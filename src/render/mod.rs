@@ -7,6 +7,7 @@
 
 mod camera;
 mod colour;
+mod colour_scale;
 mod figure;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
@@ -17,6 +18,7 @@ mod overlays;
 mod painter;
 mod primitives;
 mod renderer;
+mod renderer_choice;
 mod scene;
 #[cfg(test)]
 mod scene_tests;
@@ -27,13 +29,15 @@ mod text;
 mod walls;
 
 pub use camera::{Camera, bounds};
-pub(crate) use colour::{Colour, automatic_range};
+pub(crate) use colour::Colour;
+pub(crate) use colour_scale::automatic_range;
 pub use figure::PanelGrid;
 pub(crate) use overlays::force_reference;
 #[cfg(feature = "gpu")]
 pub(crate) use primitives::Batch;
 pub(crate) use primitives::{DiscInstance, LinkInstance, Picture};
-pub use renderer::{Renderer, RendererChoice, quieten_drivers};
+pub use renderer::{Renderer, quieten_drivers};
+pub use renderer_choice::RendererChoice;
 pub use scene::{WorldPanel, draw_scene, draw_worlds, panel_size};
 pub(crate) use style::Palette;
 pub use style::{ColourBy, Style, Theme};

@@ -4,7 +4,7 @@ use glam::DVec2;
 use image::{RgbaImage, imageops};
 
 use super::camera::half_size;
-use super::colour::ColourScale;
+use super::colour_scale::ColourScale;
 use super::legend::{Legend, ScaleBar, fill};
 use super::overlays::{force_links, motion_links, velocity_links};
 use super::text::{Align, TextBlock, TextStyle};

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::colour::{ColourScale, map_colour};
+use super::colour::map_colour;
+use super::colour_scale::ColourScale;
 use super::scene::scene_picture;
 use super::*;
 use crate::sim::{ContactView, GrainView, Observables, Snapshot, Surroundings};

@@ -107,7 +107,7 @@ fn every_scene_made_to_break_methods_opens_and_steps() {
         robot.key(egui::Key::ArrowRight);
         assert_eq!(robot.steps(), 1, "{}", info.name);
         assert_eq!(
-            robot.state().frame.start.as_ref().map(|start| start.scene.name.as_str()),
+            robot.state().run.frame.start.as_ref().map(|start| start.scene.name.as_str()),
             Some(info.name)
         );
     }

@@ -48,10 +48,10 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
 fn the_run_changes_while_it_runs() {
     let mut robot = Robot::open(pile());
     robot.click("▶  Release");
-    robot.until("ten steps", |state| state.world().unwrap().snapshot.observables.step >= 10);
+    robot.until("ten steps", |state| state.run.world().unwrap().snapshot.observables.step >= 10);
     robot.type_number("Bond", "75");
     let world = robot.world();
-    assert!(robot.state().frame.playing);
+    assert!(robot.state().run.frame.playing);
     assert_eq!(world.controls.settings.parameters.bond, 75.0);
 }
 
@@ -69,9 +69,9 @@ fn a_press_and_release_without_delay_are_a_click() {
     };
     let release = robot.place("release", 0.5, 0.5);
     click(&mut robot, release);
-    assert!(robot.state().frame.playing);
+    assert!(robot.state().run.frame.playing);
     click(&mut robot, release);
-    assert!(!robot.state().frame.playing);
+    assert!(!robot.state().run.frame.playing);
     let (left, ground) = (robot.place("Δt", 0.1, 0.5), robot.settings());
     click(&mut robot, left);
     assert!(robot.settings().parameters.time_step_secs < ground.parameters.time_step_secs);
@@ -81,10 +81,10 @@ fn a_press_and_release_without_delay_are_a_click() {
 fn pause_stops_time() {
     let mut robot = Robot::open(pile());
     robot.key(egui::Key::Space);
-    robot.until("some steps", |state| state.world().unwrap().snapshot.observables.step >= 5);
+    robot.until("some steps", |state| state.run.world().unwrap().snapshot.observables.step >= 5);
     robot.key(egui::Key::Space);
     let steps = robot.steps();
-    assert!(!robot.state().frame.playing);
+    assert!(!robot.state().run.frame.playing);
     std::thread::sleep(std::time::Duration::from_millis(100));
     robot.harness.step();
     assert_eq!(robot.steps(), steps);
@@ -108,10 +108,10 @@ fn a_run_pauses_at_the_end_of_its_scene_and_plays_on_from_there() {
     let mut robot = Robot::open(config);
     robot.state_mut().preferences.full_speed = true;
     robot.key(egui::Key::Space);
-    robot.until("the end", |state| !state.frame.playing);
+    robot.until("the end", |state| !state.run.frame.playing);
     assert_eq!(robot.steps(), 20);
     robot.key(egui::Key::Space);
-    robot.until("more", |state| state.world().unwrap().snapshot.observables.step > 22);
+    robot.until("more", |state| state.run.world().unwrap().snapshot.observables.step > 22);
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn a_new_pile_can_be_given_up() {
     (config.source.grains, config.source.seed) = (Some(300), Some(1));
     robot.state_mut().load(config);
     robot.until("progress", |state| {
-        state.frame.loading.as_ref().is_some_and(|progress| !progress.text.is_empty())
+        state.run.frame.loading.as_ref().is_some_and(|progress| !progress.text.is_empty())
     });
     robot.click("Cancel");
     assert_eq!(robot.world().snapshot.grains.len(), 138, "the old pile is still there");
@@ -179,7 +179,7 @@ fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
         failure.contains("no longer finite at step") && failure.contains("Bond 20"),
         "{failure}"
     );
-    assert!(!robot.state().frame.playing);
+    assert!(!robot.state().run.frame.playing);
     assert!(robot.shows("no longer finite"));
     robot.seek(1e-3);
     assert!(robot.world().failure.is_none());
@@ -195,7 +195,7 @@ fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
     let g = robot.world().gravity.expect("uniform gravity");
     assert!((g.x / g.length() - 25f64.to_radians().sin()).abs() < 1e-12, "{g}");
     robot.take_steps(40);
-    let (end, end_secs) = (robot.bits(), robot.state().frame.time_secs());
+    let (end, end_secs) = (robot.bits(), robot.state().run.frame.time_secs());
     let mean_x = |robot: &Robot| {
         let grains = &robot.world().snapshot.grains;
         grains.iter().map(|grain| grain.velocity.x).sum::<f64>() / grains.len() as f64
@@ -205,7 +205,7 @@ fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
         robot.seek(secs);
     }
     assert_eq!(robot.bits(), end);
-    assert!(robot.state().command_line().expect("a command line").contains("--tilt 25"));
+    assert!(robot.state().run.command_line().expect("a command line").contains("--tilt 25"));
     // Where gravity pulls to a point, there is nothing to tilt.
     let cradle = Robot::open(Config::of_scene("cradle"));
     assert!(cradle.harness.query_by_label("Tilt slider").is_none());
@@ -230,9 +230,9 @@ fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
     grains(&mut robot, "600");
     robot.clicks(&["Roll", "New pile"]);
     robot.until("the pile", |state| {
-        state.world().is_some_and(|world| world.snapshot.grains.len() == 600)
+        state.run.world().is_some_and(|world| world.snapshot.grains.len() == 600)
     });
-    let line = robot.state().command_line().expect("a command line");
+    let line = robot.state().run.command_line().expect("a command line");
     assert!(line.contains("--grains 600") && line.contains("--deposition drop-and-roll"), "{line}");
 }
 

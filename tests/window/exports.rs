@@ -30,7 +30,7 @@ fn the_window_exports_what_data_writes() {
 
         let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
         let names = names.join(",");
-        let line = robot.state().command_line().expect("a command line");
+        let line = robot.state().run.command_line().expect("a command line");
         let options: Vec<&str> = line.split(' ').skip(2).collect();
         headless(
             &[&options[..], &["--data-every", "1e-9", "--data-format", &names]].concat(),
@@ -94,9 +94,9 @@ fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
             _ => {}
         }
         let pull = (45..55).contains(&step).then_some(pull);
-        robot.state_mut().live.send(Command::Change(0, settings));
-        robot.state_mut().live.send(Command::SetPull(0, pull));
-        robot.state_mut().step();
+        robot.state_mut().run.live.send(Command::Change(0, settings));
+        robot.state_mut().run.live.send(Command::SetPull(0, pull));
+        robot.state_mut().run.step();
         simulation.change(settings).expect("sound settings");
         simulation.set_pull(pull);
         times.push(simulation.step().expect("a finite state").time_secs);
@@ -173,11 +173,11 @@ fn a_run_goes_on_while_it_is_exported() {
     let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
     robot.state_mut().preferences.full_speed = true;
     robot.key(egui::Key::Space);
-    robot.until("some steps", |state| state.world().unwrap().snapshot.observables.step >= 40);
+    robot.until("some steps", |state| state.run.world().unwrap().snapshot.observables.step >= 40);
     robot.click("Export data");
     let asked = robot.steps();
     robot.until("the export", |state| !state.is_writing());
-    assert!(robot.state().frame.playing && robot.steps() > asked);
+    assert!(robot.state().run.frame.playing && robot.steps() > asked);
     let mut scene = pile().scene(|_| true).expect("a scene");
     // The window solves steps that are not solved otherwise, and how many steps there are is the machine's affair.
     scene.set_settings(robot.settings());

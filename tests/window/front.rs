@@ -27,14 +27,15 @@ fn a_slider_that_is_let_go_starts_the_pile_again_and_leaves_a_ghost() {
     drag_time_step(&mut robot);
     let after = robot.settings().parameters.time_step_secs;
     assert!(after > 4e-3, "{after} s");
-    robot.until("the new run", |state| state.frame.playing && state.frame.time_secs() > 0.0);
+    robot
+        .until("the new run", |state| state.run.frame.playing && state.run.frame.time_secs() > 0.0);
     let row = robot.observables();
     assert_eq!(
         row.time_secs,
         row.step as f64 * row.time_step_secs,
         "with the new value from the start"
     );
-    let past = &robot.state().frame.past;
+    let past = &robot.state().run.frame.past;
     assert_eq!(past.len(), 1, "one gesture, one run");
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, before);
 }
@@ -46,10 +47,10 @@ fn nothing_starts_while_a_slider_is_held() {
     let (from, to) = (robot.place("Δt", 0.66, 0.5), robot.place("Δt", 1.0, 0.5));
     robot.drag(from, to);
     robot.settle();
-    assert_eq!((robot.steps(), robot.state().frame.past.len()), (20, 0));
+    assert_eq!((robot.steps(), robot.state().run.frame.past.len()), (20, 0));
     robot.button(to, false);
     robot.settle();
-    assert_eq!(robot.state().frame.past.len(), 1);
+    assert_eq!(robot.state().run.frame.past.len(), 1);
 }
 
 #[test]
@@ -58,7 +59,7 @@ fn a_number_that_is_typed_starts_the_pile_again_as_well() {
     robot.take_steps(5);
     robot.type_number("Bond", "75");
     assert_eq!(robot.settings().parameters.bond, 75.0);
-    assert!(robot.state().frame.playing && robot.state().frame.past.len() == 1);
+    assert!(robot.state().run.frame.playing && robot.state().run.frame.past.len() == 1);
 }
 
 /// Walls that a force drives, grains that stay where they are, one axis: each scene has a start to go back to.
@@ -71,7 +72,7 @@ fn every_scene_starts_again_with_the_new_value() {
         robot.take_steps(3);
         let time_step_secs = 0.5 * robot.settings().parameters.time_step_secs;
         robot.type_number("Δt, time step", &time_step_secs.to_string());
-        assert!(robot.state().frame.playing, "{}", info.name);
+        assert!(robot.state().run.frame.playing, "{}", info.name);
         robot.key(egui::Key::Space);
         let row = robot.observables();
         assert_eq!(row.time_step_secs, time_step_secs, "{}", info.name);
@@ -102,7 +103,7 @@ fn switched_off_the_run_goes_on_and_the_hint_says_what_is_true_then() {
     robot.click("start again when I move a slider");
     robot.take_steps(20);
     drag_time_step(&mut robot);
-    assert_eq!((robot.steps(), robot.state().frame.past.len()), (20, 0));
+    assert_eq!((robot.steps(), robot.state().run.frame.past.len()), (20, 0));
     robot.harness.step();
     assert!(robot.shows("Bonds that hold stay as they are"));
 }

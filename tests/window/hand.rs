@@ -35,7 +35,7 @@ fn a_press_and_release_in_one_frame_pin_a_grain() {
         robot.harness.event(Event::PointerButton { pos, button, pressed, modifiers });
     }
     robot.frames(2);
-    assert_eq!(robot.state().mouse.pinned, Some(GrainRef { world: 0, grain: 60 }));
+    assert_eq!(robot.state().run.pinned, Some(GrainRef { world: 0, grain: 60 }));
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     robot.take_steps(40);
     let fallen = robot.bits();
     assert!(robot.world().snapshot.grains[grains].position.y < added.position.y - 1e-3);
-    let end = robot.state().frame.recorded_secs();
+    let end = robot.state().run.frame.recorded_secs();
     for goal in [0.0, end] {
         robot.seek(goal);
     }
@@ -96,8 +96,8 @@ fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     assert_eq!(robot.steps(), 10);
     let free = robot.place("scene", 0.555, 0.08);
     shift_click(&mut robot, free);
-    assert_eq!(robot.state().frame.past.len(), 1, "the run before is kept");
-    assert!((robot.state().frame.recorded_secs() - 0.01).abs() < 1e-9);
+    assert_eq!(robot.state().run.frame.past.len(), 1, "the run before is kept");
+    assert!((robot.state().run.frame.recorded_secs() - 0.01).abs() < 1e-9);
     robot.take_steps(5);
     assert_eq!(robot.steps(), 15);
     // A session brings all of it back.
@@ -107,7 +107,7 @@ fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     let mut again = Robot::open_saved(&path);
     assert_eq!(again.bits(), now);
     again.seek(0.0);
-    again.seek(again.state().frame.recorded_secs());
+    again.seek(again.state().run.frame.recorded_secs());
     assert_eq!(again.bits(), now, "and its way");
     // A link says that it does not tell of it.
     let context = robot.harness.ctx.clone();
@@ -143,16 +143,16 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
     robot.harness.step();
     let told = robot.state().notice().map(|it| it.0.text.clone()).unwrap_or_default();
     assert!(told.starts_with("Walls go while time passes"), "{told}");
-    robot.state_mut().live.send(Command::Play);
+    robot.state_mut().run.live.send(Command::Play);
     robot.until("the wall to come", |state| {
-        let boundaries = &state.world().unwrap().snapshot.surroundings.boundaries;
+        let boundaries = &state.run.world().unwrap().snapshot.surroundings.boundaries;
         (place_of(&boundaries[0]).x - 0.01).abs() < 1e-3
     });
     press(&mut robot, to, false);
     robot.harness.event(Event::ModifiersChanged(Modifiers::NONE));
     robot.settle();
     let there = place(&robot);
-    robot.state_mut().live.send(Command::Pause);
+    robot.state_mut().run.live.send(Command::Pause);
     robot.take_steps(20);
     assert_eq!(place(&robot), there, "it stays");
     assert!((there.y - ends[0].y).abs() < 1e-3, "and went straight: {there}");
@@ -162,7 +162,7 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
 fn at(robot: &Robot, point: DVec2) -> Pos2 {
     let rect = robot.state().controls["scene"];
     let style = slump::render::Style { legend: false, ..robot.state().preferences.style.clone() };
-    let start = robot.state().frame.start.as_ref().expect("a start");
+    let start = robot.state().run.frame.start.as_ref().expect("a start");
     let size = [rect.width() as u32, rect.height() as u32];
     let camera = style.camera(start.view[0], start.view[1], size[0], size[1]);
     let [x, y] = camera.project(point);
@@ -186,9 +186,9 @@ fn exported_data_has_the_new_grain_and_says_who_put_it_there() {
     robot.take_steps(5);
     let grains = count(&robot);
     let disc = slump::world::Disc { position: DVec2::new(0.0, 0.2), radius: 2e-3 };
-    robot.state_mut().live.send(Command::Edit(0, Edit::Add(disc)));
+    robot.state_mut().run.live.send(Command::Edit(0, Edit::Add(disc)));
     robot.take_steps(5);
-    robot.state_mut().live.send(Command::Edit(0, Edit::Remove(3)));
+    robot.state_mut().run.live.send(Command::Edit(0, Edit::Remove(3)));
     robot.take_steps(1);
     assert_eq!(count(&robot), grains);
     crate::recordings::export(&mut robot);
@@ -225,7 +225,7 @@ fn a_click_pins_a_grain_and_another_lets_it_go() {
         robot.harness.hover_at(at);
         robot.button(at, true);
         robot.button(at, false);
-        assert_eq!(robot.state().mouse.pinned, expected);
+        assert_eq!(robot.state().run.pinned, expected);
         robot.harness.step();
         assert_eq!(robot.harness.query_by_label("Unpin").is_some(), expected.is_some());
         robot.frames(40);
@@ -241,13 +241,13 @@ fn a_dragged_grain_follows_the_mouse_and_stays_when_let_go() {
     robot.key(egui::Key::Space);
     robot.drag(from, to);
     robot.until("the grain to follow", |state| {
-        let grain = &state.world().unwrap().snapshot.grains[0];
+        let grain = &state.run.world().unwrap().snapshot.grains[0];
         grain.position.x > 4e-3 && grain.position.y > 0.022 && grain.velocity.length() < 1e-3
     });
     robot.button(to, false);
     robot.settle();
     assert_eq!(robot.world().controls.pull, None);
-    assert!(robot.state().mouse.grabbed.is_none());
+    assert!(robot.state().panels.scene.mouse.grabbed.is_none());
 }
 
 #[test]

@@ -137,7 +137,7 @@ fn the_squeezed_disc_is_large_enough_to_be_seen_and_its_overlap_is_plotted() {
     robot.settle();
     robot.take_steps(10);
     assert!(robot.shows("largest overlap δ/d (%)"));
-    let start = robot.state().frame.start.clone().expect("a start");
+    let start = robot.state().run.frame.start.clone().expect("a start");
     let disc = &robot.world().snapshot.grains[0];
     let part = 2.0 * disc.radius / (start.view[1] - start.view[0]).y;
     assert!((0.4..0.8).contains(&part), "it takes {part} of the height");
@@ -153,7 +153,7 @@ fn the_window_shows_what_was_computed_without_it() {
     robot.settle();
     robot.send(Command::SetPace(Pace::Max));
     robot.send(Command::Play);
-    robot.until("the end of the lesson", |state| !state.frame.playing);
+    robot.until("the end of the lesson", |state| !state.run.frame.playing);
     assert_eq!(robot.of_worlds(|world| world.snapshot.observables.slump), slumps(lesson, None));
 }
 
@@ -163,12 +163,12 @@ fn the_lessons_go_on_where_they_were_left_and_give_back_what_was_chosen() {
     let chosen = robot.state().preferences.quantities.clone();
     assert!(!robot.state().touring, "a scene was asked for");
     robot.clicks(&["Lessons", "1. The time step glues"]);
-    assert_eq!(robot.state().frame.worlds.len(), 2);
+    assert_eq!(robot.state().run.frame.worlds.len(), 2);
     for number in 2..=LESSONS.len() {
         robot.click("Next ▶");
         assert_eq!(robot.state().preferences.lesson.at + 1, number);
-        assert!(robot.state().frame.refusal.is_none(), "lesson {number} is refused");
-        let worlds = robot.state().frame.worlds.len();
+        assert!(robot.state().run.frame.refusal.is_none(), "lesson {number} is refused");
+        let worlds = robot.state().run.frame.worlds.len();
         robot.key(egui::Key::ArrowRight);
         assert!(robot.steps() > 0 && worlds > 0, "lesson {number}");
     }
@@ -220,7 +220,8 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
 
 /// What the lesson asks for next.
 fn asked(robot: &Robot) -> &'static [&'static str] {
-    (LESSONS[robot.state().preferences.lesson.at].asks_for)(robot.state())
+    let state = robot.state();
+    (LESSONS[state.preferences.lesson.at].asks_for)(&state.run, &state.preferences)
 }
 
 /// True where a control is in the window as a whole.

@@ -134,7 +134,7 @@ fn a_scene_is_chosen_by_its_picture() {
     robot.harness.get_by_role_and_label(egui::Role::Button, "drum").click();
     robot.harness.step();
     robot.settle();
-    let start = robot.state().frame.start.clone().expect("a start");
+    let start = robot.state().run.frame.start.clone().expect("a start");
     assert_eq!((start.scene.name.as_str(), robot.world().snapshot.grains.len()), ("drum", 150));
 }
 
@@ -167,7 +167,7 @@ fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
     assert!(robot.shows(&format!("1 of {}", contacts.len())));
     robot.harness.get_by_label_contains(&format!("{grain:>5} {other:>5} ")).click();
     robot.frames(2);
-    let pinned = robot.state().mouse.pinned;
+    let pinned = robot.state().run.pinned;
     assert_eq!(pinned, Some(GrainRef { world: 0, grain: grain as usize }));
 }
 
@@ -201,7 +201,7 @@ fn the_panel_tells_the_residual_of_the_last_step() {
 fn compared_worlds_share_their_simulated_time() {
     let mut robot = Robot::open(pile());
     robot.clicks(&["Compare", "Paper Fig. 4"]);
-    assert_eq!(robot.state().frame.worlds.len(), 6);
+    assert_eq!(robot.state().run.frame.worlds.len(), 6);
     let parameters = robot.of_worlds(|world| world.controls.settings.parameters);
     let numbers: Vec<_> = parameters.iter().map(|it| (it.bond, it.time_step_secs)).collect();
     let expected =
@@ -209,7 +209,7 @@ fn compared_worlds_share_their_simulated_time() {
     assert_eq!(numbers, expected);
     for tick in 1..=10 {
         robot.key(egui::Key::ArrowRight);
-        for world in &robot.state().frame.worlds {
+        for world in &robot.state().run.frame.worlds {
             let last = &world.snapshot.observables;
             let apart = last.time_secs - f64::from(tick) * 2e-3;
             assert!(apart.abs() < 1e-9, "{} s after tick {tick}", last.time_secs);
@@ -225,10 +225,10 @@ fn a_step_beside_a_far_longer_one_takes_many_and_ends_at_the_same_time() {
     let mut robot = Robot::open(pile());
     let base = robot.settings();
     robot.send(Command::Compare(vec![base.over(2e-7), base.over(1e-3)]));
-    robot.state_mut().step();
-    robot.until("the middle of the step", |state| state.frame.seeking);
+    robot.state_mut().run.step();
+    robot.until("the middle of the step", |state| state.run.frame.seeking);
     robot.settle();
-    assert!(!robot.state().frame.playing);
+    assert!(!robot.state().run.frame.playing);
     let rows = robot.of_worlds(|world| world.snapshot.observables);
     assert_eq!([rows[0].step, rows[1].step], [5000, 1], "more than come in a slice of time");
     assert!((rows[0].time_secs - rows[1].time_secs).abs() < 1e-9, "{}", rows[0].time_secs);
@@ -240,11 +240,11 @@ fn steps_that_are_asked_for_while_one_is_computed_are_taken_after_it_until_a_pau
     let base = robot.settings();
     robot.send(Command::Compare(vec![base.over(1e-7), base.over(1e-3)]));
     let steps = |robot: &Robot| robot.of_worlds(|world| world.snapshot.observables.step);
-    (0..2).for_each(|_| robot.state_mut().step());
-    robot.until("the middle of a step", |state| state.frame.seeking);
+    (0..2).for_each(|_| robot.state_mut().run.step());
+    robot.until("the middle of a step", |state| state.run.frame.seeking);
     robot.settle();
     assert_eq!(steps(&robot), [20_000, 2]);
-    (0..3).for_each(|_| robot.state_mut().step());
+    (0..3).for_each(|_| robot.state_mut().run.step());
     robot.send(Command::Pause);
     assert_eq!(
         steps(&robot),
@@ -260,10 +260,10 @@ fn a_world_that_would_never_catch_up_lets_commands_in() {
     robot.send(Command::Compare(vec![base.over(1e-4), base.over(1e6)]));
     for plays in [false, true] {
         match plays {
-            true => robot.state_mut().live.send(Command::Play),
-            false => robot.state_mut().live.send(Command::Step),
+            true => robot.state_mut().run.live.send(Command::Play),
+            false => robot.state_mut().run.live.send(Command::Step),
         };
-        robot.until("some steps", |state| state.frame.worlds[0].snapshot.observables.step > 3);
+        robot.until("some steps", |state| state.run.frame.worlds[0].snapshot.observables.step > 3);
         robot.key(egui::Key::R);
         assert_eq!(robot.steps(), 0);
     }
@@ -282,7 +282,7 @@ fn what_hardly_moves_rests_and_is_told_in_units_that_one_knows() {
         .clone()
         .position(rests)
         .unwrap_or_else(|| panic!("{:?}", speeds.collect::<Vec<_>>()));
-    robot.state_mut().mouse.pinned = Some(GrainRef { world: 0, grain });
+    robot.state_mut().run.pinned = Some(GrainRef { world: 0, grain });
     robot.frames(3);
     assert!(robot.shows("0.000 m/s, 0.000 m/s"), "grain {grain}");
 }
@@ -314,7 +314,9 @@ fn symbols_and_ordinals_are_written_as_one_reads_them() {
     let mut robot = Robot::open(config);
     robot.send(Command::SetPace(Pace::Max));
     robot.send(Command::Play);
-    robot.until("a long curve", |state| state.frame.worlds[0].snapshot.observables.step > 33_000);
+    robot.until("a long curve", |state| {
+        state.run.frame.worlds[0].snapshot.observables.step > 33_000
+    });
     robot.send(Command::Pause);
     words_are_as_one_reads_them(&mut robot);
     assert!(robot.shows("plotted: one step in 2"), "the situation");
@@ -378,7 +380,7 @@ fn a_world_computes_what_it_computes_alone() {
     other.parameters.bond = 0.0;
     robot.send(Command::Compare(vec![other, same]));
     robot.take_steps(20);
-    let worlds = &robot.state().frame.worlds;
+    let worlds = &robot.state().run.frame.worlds;
     assert_eq!(worlds[1].snapshot.grains, alone);
     assert_ne!(worlds[0].snapshot.grains, alone);
 }

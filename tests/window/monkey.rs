@@ -112,7 +112,7 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
         std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
         most = most.max(resident_mib());
         acts.push(done);
-        if robot.state().frame.acknowledged == robot.state().live.sent() {
+        if robot.state().run.frame.acknowledged == robot.state().run.live.sent() {
             answered = Instant::now();
         }
         assert!(answered.elapsed() < PATIENCE, "the solver's thread is silent after {acts:?}");
@@ -148,7 +148,9 @@ fn twenty_runs() {
     let mut after = Vec::new();
     for _ in 0..20 {
         robot.send(Command::Play);
-        robot.until("the end", |state| !state.frame.playing && state.frame.time_secs() > 0.99);
+        robot.until("the end", |state| {
+            !state.run.frame.playing && state.run.frame.time_secs() > 0.99
+        });
         robot.send(Command::Reset);
         after.push(resident_mib());
     }

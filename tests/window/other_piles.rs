@@ -78,9 +78,9 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     let kept: Vec<_> = std::fs::read_dir(cache.path()).expect("a folder").collect();
     assert_eq!(kept.len(), 8, "initial states are kept");
     // The run itself changes nothing of it, and the number stands beside its own.
-    robot.state_mut().live.send(Command::SetPace(slump::live::Pace::Max));
-    robot.state_mut().live.send(Command::Play);
-    robot.until("the end", |state| !state.frame.playing && state.frame.time_secs() > 0.09);
+    robot.state_mut().run.live.send(Command::SetPace(slump::live::Pace::Max));
+    robot.state_mut().run.live.send(Command::Play);
+    robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.09);
     robot.settle();
     assert_near(mean(&mut robot, 0, 0.1), expected);
     robot.harness.step();
@@ -113,7 +113,7 @@ fn a_run_that_was_pulled_or_changed_on_its_way_has_none() {
     let mut robot = open(cache.path());
     mean(&mut robot, 0, 0.1);
     let pull = Pull { grain: 3, target: DVec2::new(0.0, 0.1) };
-    robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
+    robot.state_mut().run.live.send(Command::SetPull(0, Some(pull)));
     robot.key(egui::Key::ArrowRight);
     robot.send(Command::SetPull(0, None));
     assert_eq!(robot.state().ensemble.mean_at(0, 0.1), None);
@@ -152,14 +152,14 @@ fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
     let (before, steps) = (robot.bits(), robot.steps());
     robot.state_mut().load(rain());
     let preview = |state: &slump::app::AppState| {
-        state.frame.loading.as_ref().and_then(|loading| loading.preview.clone())
+        state.run.frame.loading.as_ref().and_then(|loading| loading.preview.clone())
     };
     robot.until("the rain", |state| preview(state).is_some());
     assert_eq!(preview(robot.state()).expect("the rain").snapshot.grains.len(), 400);
     robot.until("grains that have fallen", |state| {
         preview(state).is_some_and(|now| now.snapshot.observables.time_secs > 0.05)
     });
-    let told = robot.state().frame.loading.as_ref().expect("progress").text.clone();
+    let told = robot.state().run.frame.loading.as_ref().expect("progress").text.clone();
     assert!(told.starts_with("Raining a new pile of 400"), "{told}");
     assert!(robot.state().controls.contains_key("pile in the making"), "it is drawn");
     let shown = robot.harness.query_all_by_label_contains("Raining a new pile of 400").count();
@@ -169,13 +169,13 @@ fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
         robot.harness.key_press(key);
         robot.harness.step();
     }
-    assert!(robot.state().frame.loading.is_some(), "the situation: it still rains");
+    assert!(robot.state().run.frame.loading.is_some(), "the situation: it still rains");
     assert_eq!((robot.bits(), robot.steps()), (before.clone(), steps), "the world waits");
 
     robot.click("Cancel");
-    assert!(robot.state().frame.loading.is_none() && !robot.state().frame.playing);
+    assert!(robot.state().run.frame.loading.is_none() && !robot.state().run.frame.playing);
     assert_eq!((robot.bits(), robot.steps()), (before, steps), "it is there again");
     robot.take_steps(1);
     assert_eq!(robot.steps(), steps + 1, "and goes on");
-    assert_eq!(robot.state().frame.worlds[0].curve.rows().count(), 7, "with its record");
+    assert_eq!(robot.state().run.frame.worlds[0].curve.rows().count(), 7, "with its record");
 }

@@ -17,7 +17,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
         if step == 50 {
             robot.type_number("Bond", "80");
         }
-        robot.state_mut().step();
+        robot.state_mut().run.step();
     }
     robot.settle();
     assert_eq!(robot.steps(), 90);
@@ -32,7 +32,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     assert!((1..30).contains(&scrubbed), "step {scrubbed}");
     let settings = robot.settings();
     assert_eq!((settings.parameters.bond, settings.parameters.time_step_secs), (20.0, 1e-3));
-    assert_eq!(robot.state().frame.recorded_secs(), curve[90].time_secs, "nothing is lost yet");
+    assert_eq!(robot.state().run.frame.recorded_secs(), curve[90].time_secs, "nothing is lost yet");
     // To the end again, without stepping: a replay of the recording.
     robot.seek(curve[90].time_secs);
     assert_eq!(robot.bits(), uninterrupted);
@@ -50,16 +50,16 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
 fn a_step_in_the_past_deletes_nothing() {
     let mut robot = Robot::open(pile());
     robot.take_steps(50);
-    let (end, until) = (robot.bits(), robot.state().frame.recorded_secs());
+    let (end, until) = (robot.bits(), robot.state().run.frame.recorded_secs());
     robot.seek(0.02);
-    assert!(robot.state().frame.replaying);
+    assert!(robot.state().run.frame.replaying);
     robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.steps(), 21);
-    assert_eq!(robot.state().frame.recorded_secs(), until);
+    assert_eq!(robot.state().run.frame.recorded_secs(), until);
     assert_eq!(robot.world().curve.len(), 51);
     robot.take_steps(29);
     assert_eq!(robot.bits(), end);
-    assert!(!robot.state().frame.replaying && robot.state().frame.past.is_empty());
+    assert!(!robot.state().run.frame.replaying && robot.state().run.frame.past.is_empty());
     robot.key(egui::Key::ArrowRight);
     assert_eq!((robot.steps(), robot.world().curve.len()), (51, 52));
 }
@@ -77,12 +77,12 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     let curve = curve_of(&robot);
     robot.seek(0.02);
     robot.type_number("Δt, time step", "5e-3");
-    assert!(robot.state().frame.branching);
+    assert!(robot.state().run.frame.branching);
     robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.steps(), 21);
     assert_eq!(robot.world().curve.len(), 22);
-    assert!((robot.state().frame.recorded_secs() - 0.025).abs() < 1e-12);
-    let past = robot.state().frame.past.clone();
+    assert!((robot.state().run.frame.recorded_secs() - 0.025).abs() < 1e-12);
+    let past = robot.state().run.frame.past.clone();
     assert_eq!(past.len(), 1);
     let of_past = past[0].worlds[0].controls.settings.parameters.time_step_secs;
     assert_eq!(of_past, 1e-3, "the run before is told of with its own time step");
@@ -96,7 +96,7 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     robot.frames(2);
     assert_eq!(typed(&robot), "1e-3", "and so does its slider");
     assert!(robot.shows("↶ Bond 20, Δt 5e-3 s, 0.025 s"));
-    let past = robot.state().frame.past.clone();
+    let past = robot.state().run.frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
     // What is undone can be done again, as often as one likes.
     robot.send(Command::Return(past[0].number));
@@ -110,15 +110,15 @@ fn a_reset_and_other_worlds_keep_the_run_and_four_are_kept() {
         robot.take_steps(3 * round);
         robot.key(egui::Key::R);
         assert_eq!(robot.steps(), 0);
-        assert_eq!(robot.state().frame.past.len() as u64, round.min(4));
+        assert_eq!(robot.state().run.frame.past.len() as u64, round.min(4));
     }
     // A reset of nothing keeps nothing.
     robot.key(egui::Key::R);
     let lengths: Vec<usize> =
-        robot.state().frame.past.iter().map(|run| run.worlds[0].curve.len()).collect();
+        robot.state().run.frame.past.iter().map(|run| run.worlds[0].curve.len()).collect();
     assert_eq!(lengths, [10, 13, 16, 19]);
     robot.load(pile());
-    assert!(robot.state().frame.past.is_empty(), "they are of another start");
+    assert!(robot.state().run.frame.past.is_empty(), "they are of another start");
 }
 
 #[test]
@@ -169,14 +169,14 @@ fn stepping_schemes_and_a_pull_are_played_back_bitwise() {
     let settings = robot.settings();
     let pull = Pull { grain: 100, target: DVec2::new(0.0, 0.1) };
     for (stepper, steps) in [(Stepper::Dem, 40), (Stepper::TgsSoft, 20), (Stepper::Dem, 20)] {
-        robot.state_mut().live.send(Command::Change(0, Settings { stepper, ..settings }));
-        robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
+        robot.state_mut().run.live.send(Command::Change(0, Settings { stepper, ..settings }));
+        robot.state_mut().run.live.send(Command::SetPull(0, Some(pull)));
         for _ in 0..steps {
-            robot.state_mut().step();
+            robot.state_mut().run.step();
         }
     }
     robot.settle();
-    let (uninterrupted, end_secs) = (robot.bits(), robot.state().frame.time_secs());
+    let (uninterrupted, end_secs) = (robot.bits(), robot.state().run.frame.time_secs());
     for time_secs in [0.015, 0.05] {
         robot.seek(time_secs);
         assert_ne!(robot.bits(), uninterrupted);
@@ -200,39 +200,39 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
     let at = |robot: &Robot| robot.steps() as usize;
     robot.seek(0.0);
     // Slowly, so that there is time to look.
-    robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.02)));
-    robot.state_mut().live.send(Command::Play);
+    robot.state_mut().run.live.send(Command::SetPace(Pace::RealTime(0.02)));
+    robot.state_mut().run.live.send(Command::Play);
     robot.until("stored moments", |state| {
-        state.frame.stored && state.world().expect("a world").snapshot.observables.step >= 5
+        state.run.frame.stored && state.run.world().expect("a world").snapshot.observables.step >= 5
     });
     let shown = at(&robot);
     assert_eq!(robot.bits(), recorded[shown]);
-    assert!(robot.state().frame.playing && robot.state().frame.replaying);
+    assert!(robot.state().run.frame.playing && robot.state().run.frame.replaying);
     // Stopped on the way, that moment is there to go on from.
     robot.key(egui::Key::Space);
     let stopped = at(&robot);
-    assert!(!robot.state().frame.stored && (shown..30).contains(&stopped), "step {stopped}");
+    assert!(!robot.state().run.frame.stored && (shown..30).contains(&stopped), "step {stopped}");
     assert_eq!(robot.bits(), recorded[stopped]);
     robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.bits(), recorded[stopped + 1]);
     // Played again, a change branches off at the moment that is shown.
-    robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.5)));
-    robot.state_mut().live.send(Command::Play);
+    robot.state_mut().run.live.send(Command::SetPace(Pace::RealTime(0.5)));
+    robot.state_mut().run.live.send(Command::Play);
     robot.until("its end, and more", |state| {
-        state.world().expect("a world").snapshot.observables.step > steps as u64 + 3
+        state.run.world().expect("a world").snapshot.observables.step > steps as u64 + 3
     });
     robot.key(egui::Key::Space);
-    assert!(robot.state().frame.past.is_empty(), "a replay is no branch");
+    assert!(robot.state().run.frame.past.is_empty(), "a replay is no branch");
     robot.seek(0.06);
     assert_eq!(robot.bits(), recorded[steps]);
-    robot.state_mut().live.send(Command::Seek(0.01));
-    robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.02)));
-    robot.state_mut().live.send(Command::Play);
-    robot.until("stored moments", |state| state.frame.stored);
+    robot.state_mut().run.live.send(Command::Seek(0.01));
+    robot.state_mut().run.live.send(Command::SetPace(Pace::RealTime(0.02)));
+    robot.state_mut().run.live.send(Command::Play);
+    robot.until("stored moments", |state| state.run.frame.stored);
     robot.set(|settings| settings.parameters.bond = 5.0);
     assert_eq!(robot.settings().parameters.bond, 5.0);
-    robot.until("a branch", |state| !state.frame.past.is_empty());
-    assert!(!robot.state().frame.stored);
+    robot.until("a branch", |state| !state.run.frame.past.is_empty());
+    assert!(!robot.state().run.frame.stored);
 }
 
 #[test]
@@ -242,20 +242,20 @@ fn runs_have_the_names_that_they_are_given() {
     robot.key(egui::Key::R);
     robot.take_steps(2);
     robot.click("Compare");
-    let number = robot.state().frame.past[0].number;
+    let number = robot.state().run.frame.past[0].number;
     robot.type_number(&format!("Name of run {number}"), "first try");
     robot.type_number("Name of this run", "second");
-    assert_eq!(robot.state().frame.past[0].name, "first try");
-    assert_eq!(robot.state().frame.name, "second");
+    assert_eq!(robot.state().run.frame.past[0].name, "first try");
+    assert_eq!(robot.state().run.frame.name, "second");
     robot.click("↶ first try, 0.003 s");
-    assert_eq!((robot.steps(), &*robot.state().frame.name), (3, "first try"));
-    assert_eq!(robot.state().frame.past[0].name, "second");
+    assert_eq!((robot.steps(), &*robot.state().run.frame.name), (3, "first try"));
+    assert_eq!(robot.state().run.frame.past[0].name, "second");
     // What branches off is another run.
     robot.seek(0.001);
     let mut settings = robot.settings();
     settings.parameters.bond = 3.0;
-    robot.state_mut().change(0, settings);
+    robot.state_mut().run.change(0, settings);
     robot.take_steps(1);
-    let names: Vec<_> = robot.state().frame.past.iter().map(|run| &*run.name).collect();
-    assert_eq!((names, &*robot.state().frame.name), (vec!["second", "first try"], ""));
+    let names: Vec<_> = robot.state().run.frame.past.iter().map(|run| &*run.name).collect();
+    assert_eq!((names, &*robot.state().run.frame.name), (vec!["second", "first try"], ""));
 }

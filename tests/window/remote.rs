@@ -223,7 +223,7 @@ impl StartSource for Rain {
     }
 
     fn to_bytes(&self) -> slump::error::Result<Vec<u8>> {
-        slump::live::source_to_bytes(self)
+        slump::live::to_bytes(self)
     }
 }
 

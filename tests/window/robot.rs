@@ -64,7 +64,7 @@ impl Robot {
             .with_context_setup(theme::install);
         let harness = renderer(window).build_ui_state(ui, state);
         let mut robot = Self { harness };
-        robot.until("a scene", |state| !state.frame.worlds.is_empty());
+        robot.until("a scene", |state| !state.run.frame.worlds.is_empty());
         // Sliders that come with a scene move what is above them.
         robot.frames(2);
         robot
@@ -79,7 +79,7 @@ impl Robot {
     }
 
     pub fn world(&self) -> &WorldFrame {
-        self.state().world().unwrap()
+        self.state().run.world().unwrap()
     }
 
     pub fn steps(&self) -> u64 {
@@ -119,7 +119,7 @@ impl Robot {
     }
 
     pub fn of_worlds<T>(&self, value: impl Fn(&WorldFrame) -> T) -> Vec<T> {
-        self.state().frame.worlds.iter().map(value).collect()
+        self.state().run.frame.worlds.iter().map(value).collect()
     }
 
     pub fn bits(&self) -> Vec<[u64; 6]> {
@@ -131,7 +131,7 @@ impl Robot {
     }
 
     pub fn send(&mut self, command: Command) {
-        self.state_mut().live.send(command);
+        self.state_mut().run.live.send(command);
         self.settle();
     }
 
@@ -140,12 +140,12 @@ impl Robot {
     }
 
     pub fn take_steps(&mut self, steps: u64) {
-        (0..steps).for_each(|_| self.state_mut().step());
+        (0..steps).for_each(|_| self.state_mut().run.step());
         self.settle();
     }
 
     pub fn change(&mut self, world: usize, settings: Settings) {
-        self.state_mut().change(world, settings);
+        self.state_mut().run.change(world, settings);
         self.settle();
     }
 
@@ -193,8 +193,8 @@ impl Robot {
     /// Draws frames until every command has been carried out.
     pub fn settle(&mut self) {
         self.until("the solver's thread", |state| {
-            let frame = &state.frame;
-            frame.acknowledged == state.live.sent() && !frame.seeking && frame.loading.is_none()
+            let frame = &state.run.frame;
+            frame.acknowledged == state.run.live.sent() && !frame.seeking && frame.loading.is_none()
         });
         self.harness.step();
     }

@@ -13,9 +13,9 @@ fn two_worlds() -> Robot {
     let base = robot.settings();
     robot.take_steps(5);
     let variants = vec![base.over(1e-3), base.over(2e-3)];
-    robot.state_mut().live.send(Command::Compare(variants));
+    robot.state_mut().run.live.send(Command::Compare(variants));
     robot.take_steps(20);
-    robot.state_mut().change(0, base.over(1e-3).with_bond(3.0));
+    robot.state_mut().run.change(0, base.over(1e-3).with_bond(3.0));
     robot.take_steps(20);
     robot.seek(0.06);
     robot
@@ -30,12 +30,12 @@ fn a_session_brings_back_worlds_record_past_and_window() {
     robot.click("Law, solver");
     let path = robot.save_session(folder.path());
     assert!(path.extension().is_some_and(|ending| ending == "session"));
-    let (before, past) = (shown(&robot), robot.state().frame.past.len());
+    let (before, past) = (shown(&robot), robot.state().run.frame.past.len());
 
     let mut again = Robot::open_saved(&path);
-    assert!(again.state().frame.refusal.is_none(), "{:?}", again.state().frame.refusal);
+    assert!(again.state().run.frame.refusal.is_none(), "{:?}", again.state().run.frame.refusal);
     assert_eq!(shown(&again), before);
-    assert_eq!((again.state().frame.past.len(), past), (1, 1), "the run before is there");
+    assert_eq!((again.state().run.frame.past.len(), past), (1, 1), "the run before is there");
     assert_eq!(again.state().preferences.theme, egui::ThemePreference::Dark);
     assert!(!again.state().preferences.plots);
     // The panel that was open is so again: its contents are there.
@@ -121,7 +121,7 @@ fn copied(robot: &mut Robot) -> String {
 #[test]
 fn a_link_opens_the_moment_that_it_was_copied_at() {
     let mut robot = two_worlds();
-    let mut settings = robot.state().frame.worlds[1].controls.settings;
+    let mut settings = robot.state().run.frame.worlds[1].controls.settings;
     settings.stepper = Stepper::Range;
     robot.change(1, settings);
     let text = copied(&mut robot);
@@ -131,7 +131,7 @@ fn a_link_opens_the_moment_that_it_was_copied_at() {
     };
     let mut again = Robot::open(Config::of_scene("cradle"));
     again.paste(format!(" {text}\n"));
-    assert!(again.state().frame.refusal.is_none(), "{:?}", again.state().frame.refusal);
+    assert!(again.state().run.frame.refusal.is_none(), "{:?}", again.state().run.frame.refusal);
     assert_eq!(places(&again), places(&robot), "{text}");
     let settings = |robot: &Robot| robot.of_worlds(|world| world.controls.settings);
     assert_eq!(settings(&again), settings(&robot));
@@ -147,7 +147,7 @@ fn a_link_opens_the_moment_that_it_was_copied_at() {
 fn a_link_says_what_it_leaves_out_and_what_is_none_is_refused() {
     let mut robot = Robot::open(pile());
     let pull = Pull { grain: 100, target: DVec2::new(0.0, 0.1) };
-    robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
+    robot.state_mut().run.live.send(Command::SetPull(0, Some(pull)));
     robot.take_steps(3);
     copied(&mut robot);
     assert!(robot.notice().contains("pulled by hand"));
@@ -171,9 +171,9 @@ fn a_saved_run_goes_on_in_the_window_as_it_would_have_without() {
     let mut robot = Robot::open(pile());
     robot.state_mut().load_run(saved.expect("a sound state"));
     robot.until("the saved run", |state| {
-        state.world().is_some_and(|world| world.snapshot.observables.step == 40)
+        state.run.world().is_some_and(|world| world.snapshot.observables.step == 40)
     });
-    assert_eq!(robot.state().frame.time_secs(), simulation.time_secs());
+    assert_eq!(robot.state().run.frame.time_secs(), simulation.time_secs());
     robot.take_steps(20);
     simulation.take_steps(20).expect("finite states");
     assert_eq!(robot.steps(), 60);
@@ -216,7 +216,7 @@ fn the_window_saves_what_save_writes() {
         assert_eq!(found.file_name().and_then(|name| name.to_str()), Some(&*name));
 
         let written = folder.path().join("headless.slump");
-        let line = robot.state().command_line().expect("a command line");
+        let line = robot.state().run.command_line().expect("a command line");
         let options: Vec<&str> = line.split(' ').skip(2).collect();
         headless(&options, &written);
         assert!(bytes(&found) == bytes(&written), "{scene}, {stepper:?}");
@@ -231,14 +231,14 @@ fn an_earlier_moment_is_saved_as_it_was() {
     robot.type_number("Δt, time step", "2e-3");
     robot.take_steps(20);
     let then = saved(&mut robot);
-    let at_secs = robot.state().frame.time_secs();
+    let at_secs = robot.state().run.frame.time_secs();
     let mut settings = robot.settings();
     settings.parameters.bond = 80.0;
     robot.take_steps(5);
-    robot.state_mut().change(0, settings);
+    robot.state_mut().run.change(0, settings);
     robot.take_steps(60);
     let end = saved(&mut robot);
-    robot.state_mut().live.send(Command::Seek(at_secs));
+    robot.state_mut().run.live.send(Command::Seek(at_secs));
     // The seek may still be going on when this is asked for.
     let again = saved(&mut robot);
     assert!(again != then && then != end, "no file replaces another");
@@ -259,7 +259,7 @@ fn a_hand_that_pulls_is_not_saved() {
     let folder = folder();
     let mut robot = Robot::open_in(folder.path(), pile());
     let pull = Pull { grain: 100, target: DVec2::new(0.0, 0.1) };
-    robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
+    robot.state_mut().run.live.send(Command::SetPull(0, Some(pull)));
     robot.take_steps(3);
     assert!(robot.world().controls.pull.is_some());
     assert_eq!(SavedState::open(&saved(&mut robot)).expect("a state").simulation.pull(), None);
@@ -277,7 +277,7 @@ fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
     // The file that was just saved is the one that the panel offers.
     robot.click("Open");
     assert_eq!((robot.steps(), robot.bits()), (25, before.clone()));
-    assert_eq!(robot.world().recorded_from_secs, robot.state().frame.time_secs());
+    assert_eq!(robot.world().recorded_from_secs, robot.state().run.frame.time_secs());
     robot.take_steps(10);
     assert_eq!(robot.bits(), end);
     robot.key(egui::Key::R);
@@ -338,9 +338,9 @@ fn a_session_that_is_saved_in_the_middle_of_a_step_opens_and_goes_on() {
     let mut robot = Robot::open(pile());
     let base = robot.settings();
     robot.send(Command::Compare(vec![base.over(1e-7), base.over(2e-3)]));
-    robot.state_mut().step();
+    robot.state_mut().run.step();
     robot.until("the middle of the step", |state| {
-        state.frame.seeking && state.frame.worlds[0].snapshot.observables.step > 100
+        state.run.frame.seeking && state.run.frame.worlds[0].snapshot.observables.step > 100
     });
     let path = robot.save_session(files.path());
     let mut opened = Robot::open_saved(&path);

@@ -5,14 +5,14 @@
 //! They run on cores that are idle, from the start to the scene's end, with one set of settings. A run whose
 //! settings changed on the way, or which a hand pulled in, is none that they could be compared with.
 
-use std::path::PathBuf;
-use std::sync::Arc;
 mod pool;
 mod runs;
 
-use super::preferences::user_folder;
-use super::state::AppState;
-use crate::live::LiveStart;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::user_folder::user_folder;
+use crate::live::{LiveFrame, LiveStart};
 use crate::scene::NewPile;
 use crate::sim::Settings;
 pub(super) use pool::on_idle_cores;
@@ -72,41 +72,24 @@ impl Ensemble {
         self.pool.as_ref().map_or(0, WorkerPool::threads)
     }
 
-    /// Mean slump of those that have come to their end at a simulated time (s), half the width of its interval, and
-    /// their number.
-    pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
-        let band = self.summary(world)?.band;
-        let (mean, half) = band.at(time_secs)?;
-        Some((mean, half, band.count))
-    }
-
-    /// What is said of those of a world; nothing where it has none.
-    pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
-        self.pool.as_ref()?.summary(world)
-    }
-}
-
-impl AppState {
-    /// Has the other piles follow the worlds that there are.
-    pub(crate) fn follow_ensemble(&mut self, context: &egui::Context) {
-        let (ensemble, opened) = (&mut self.ensemble, self.frame.start.clone());
+    /// Follows the worlds that there are; stops if other piles are not wanted.
+    pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
-        if address(&ensemble.opened) != address(&opened) {
-            ensemble.stop();
-            ensemble.piles = opened.as_ref().map_or_else(Vec::new, |opened| others_of(opened));
-            ensemble.opened = opened;
+        if address(&self.opened) != address(&frame.start) {
+            self.stop();
+            self.piles = frame.start.as_ref().map_or_else(Vec::new, |opened| others_of(opened));
+            self.opened.clone_from(&frame.start);
         }
-        if !self.preferences.ensemble {
-            return ensemble.stop();
+        if !is_wanted {
+            return self.stop();
         }
-        if !ensemble.is_possible() {
+        if !self.is_possible() {
             return;
         }
-        let Ensemble { folder: Some(folder), opened: Some(opened), piles, pool, worlds } = ensemble
-        else {
+        let Self { folder: Some(folder), opened: Some(opened), piles, pool, worlds } = self else {
             return;
         };
-        let all = self.frame.worlds.iter().map(|world| {
+        let all = frame.worlds.iter().map(|world| {
             let is_from_the_start = world.recorded_from_secs == 0.0;
             (world.is_even && is_from_the_start).then_some(world.controls.settings)
         });
@@ -118,9 +101,9 @@ impl AppState {
         }
     }
 
-    /// How other piles come about, and which they are.
-    pub(crate) fn about_ensemble(&self) -> String {
-        let Some(summary) = self.ensemble.summary(self.selected) else { return RULE.into() };
+    /// How the other piles of a world come about, and which they are.
+    pub(crate) fn about(&self, world: usize) -> String {
+        let Some(summary) = self.summary(world) else { return RULE.into() };
         let EnsembleSummary { seeds, settling, failed, .. } = summary;
         let all: Vec<String> = seeds.iter().map(u64::to_string).collect();
         let mut text = format!("{RULE}\nSeeds {}.", all.join(", "));
@@ -133,15 +116,28 @@ impl AppState {
         text
     }
 
-    /// What is said of a world's other piles at the moment that is shown; nothing where it has none.
-    pub(crate) fn said_of_ensemble(&self, world: usize) -> Option<String> {
-        let row = self.frame.worlds.get(world)?.snapshot.observables;
-        Some(said(&self.ensemble.summary(world)?, row.time_secs))
+    /// The result of a world's other piles at the moment that is shown, in words; nothing if the world has none.
+    pub(crate) fn said(&self, frame: &LiveFrame, world: usize) -> Option<String> {
+        let row = frame.worlds.get(world)?.snapshot.observables;
+        Some(said(&self.summary(world)?, row.time_secs))
     }
 
-    /// The same in short, for narrow places.
-    pub(crate) fn others_in_short(&self, world: usize) -> Option<String> {
-        Some(self.said_of_ensemble(world)?.replace("other piles", "others"))
+    /// The words of `said` in short, for narrow places.
+    pub(crate) fn said_in_short(&self, frame: &LiveFrame, world: usize) -> Option<String> {
+        Some(self.said(frame, world)?.replace("other piles", "others"))
+    }
+
+    /// Mean slump of those that have come to their end at a simulated time (s), half the width of its interval, and
+    /// their number.
+    pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
+        let band = self.summary(world)?.band;
+        let (mean, half) = band.at(time_secs)?;
+        Some((mean, half, band.count))
+    }
+
+    /// What is said of those of a world; nothing where it has none.
+    pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
+        self.pool.as_ref()?.summary(world)
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::runs::{Band, SlumpSeries, scene_of, slump};
 use crate::Instant;
-use crate::app::opening::settled_part;
+use crate::app::settling_progress::settled_part;
 use crate::error::{Error, Result};
 use crate::live::LiveStart;
 use crate::output::check_writable;
@@ -293,7 +293,8 @@ impl PoolState {
     }
 }
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(target_os = "linux")]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -18,8 +18,6 @@ pub(crate) type SlumpSeries = Vec<[f64; 2]>;
 pub(crate) struct Band {
     pub times_secs: Vec<f64>,
     pub means: Vec<f64>,
-    /// Lower ends of the intervals; −∞ for one run.
-    pub lows: Vec<f64>,
     /// Upper ends of the intervals; ∞ for one run.
     pub highs: Vec<f64>,
     pub count: usize,
@@ -38,7 +36,6 @@ impl Band {
             let mean = study::mean(&slumps);
             band.times_secs.push(runs[0][index][0]);
             band.means.push(mean.mean);
-            band.lows.push(mean.low);
             band.highs.push(mean.high);
         }
         band
@@ -131,7 +128,7 @@ pub(super) fn scene_of(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::opening::start;
+    use crate::app::scene_start::start;
 
     fn run(slumps: [f64; 3]) -> SlumpSeries {
         [0.0, 0.5, 1.0].into_iter().zip(slumps).map(|(time, slump)| [time, slump]).collect()

@@ -2,12 +2,10 @@
 
 use egui::{Button, RichText, Ui};
 
-use crate::app::budget::{BUDGETS, PAPER};
-use crate::app::setting_control::{called, written};
-use crate::app::state::AppState;
+use crate::app::budget::PAPER;
 use crate::app::theme;
-use crate::live::{Command, Controls};
-use crate::setting::Value;
+use crate::app::watched_run::WatchedRun;
+use crate::live::Command;
 use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
@@ -16,30 +14,30 @@ use crate::world::FrictionCone;
 /// The paper's time steps, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 /// Most worlds side by side.
-pub(crate) const MOST_WORLDS: usize = 6;
+const MOST_WORLDS: usize = 6;
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.label(
         RichText::new("Worlds from one initial state, kept at the same simulated time.")
             .small()
             .weak(),
     );
-    presets(ui, state);
-    let before: Vec<_> = state.wanted.iter().map(|wanted| wanted.settings).collect();
+    presets(ui, run);
+    let before: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
     if before.is_empty() {
         return;
     }
-    let (mut all, compares) = (before.clone(), state.compares());
-    let rows = (0..all.len()).filter(|_| compares).map(|index| row(ui, state, index));
+    let (mut all, compares) = (before.clone(), run.compares());
+    let rows = (0..all.len()).filter(|_| compares).map(|index| row(ui, run, index));
     let rows: Vec<_> = rows.collect();
     ui.horizontal(|ui| {
         let add = ui.add_enabled(all.len() < MOST_WORLDS, Button::new("Add"));
         if add.on_hover_text("One more like the selected one.").clicked() {
-            all.push(all[state.selected]);
+            all.push(all[run.selected]);
         }
         let hint = "Go on with the selected world alone, from the start.";
         if compares && ui.button("One world").on_hover_text(hint).clicked() {
-            all = vec![all[state.selected]];
+            all = vec![all[run.selected]];
         }
     });
     let removed = rows.into_iter().position(|is_removed| is_removed);
@@ -47,7 +45,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         all.remove(index);
     }
     if all != before {
-        state.live.send(Command::Compare(all));
+        run.live.send(Command::Compare(all));
     }
 }
 
@@ -128,19 +126,19 @@ fn stepped(base: Settings, stepper: Stepper) -> Settings {
     settings.with_only_what_is_taken()
 }
 
-fn presets(ui: &mut Ui, state: &mut AppState) {
-    let Some(base) = state.wanted.get(state.selected).map(|wanted| wanted.settings) else { return };
+fn presets(ui: &mut Ui, run: &mut WatchedRun) {
+    let Some(base) = run.wanted_settings() else { return };
     ui.horizontal_wrapped(|ui| {
         for LineUp { name, hint, worlds } in &LINE_UPS {
             if ui.button(*name).on_hover_text(*hint).clicked() {
-                state.live.send(Command::Compare(worlds(base)));
+                run.live.send(Command::Compare(worlds(base)));
             }
         }
     });
 }
 
 /// One world's row. True where it is to be removed.
-fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
+fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {
         // Names are words on the panel's ground; the colour alone would not always be readable.
@@ -148,13 +146,13 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
         ui.label(RichText::new("■").color(colour));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             removed = ui.small_button("✖").on_hover_text("Remove this world.").clicked();
-            let name = numbered(state, index);
+            let name = run.numbered_title(index);
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.with_layout(left, |ui| {
-                let chosen = Button::selectable(state.selected == index, name.as_str());
+                let chosen = Button::selectable(run.selected == index, name.as_str());
                 let hint = format!("{name}\nSliders, Law and solver are about this world.");
                 if ui.add(chosen.truncate()).on_hover_text(hint).clicked() {
-                    state.selected = index;
+                    run.selected = index;
                 }
             });
         });
@@ -162,77 +160,11 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
     removed
 }
 
-/// The slump of a world, where that tells anything.
-pub(super) fn slump(state: &AppState, index: usize) -> String {
-    let slump = state.frame.worlds.get(index).map(|world| world.snapshot.observables.slump);
-    let told = slump.filter(|_| state.slumps());
-    told.map_or_else(String::new, |slump| format!("Δy {slump:.3}"))
-}
-
-/// What tells a world from the others, with the number by which headings call it.
-pub(super) fn numbered(state: &AppState, index: usize) -> String {
-    format!("{}: {}", index + 1, title(state, index))
-}
-
-/// What tells a world from the others.
-pub(crate) fn title(state: &AppState, index: usize) -> String {
-    title_among(&state.wanted, index)
-}
-
-/// Settings whose differences follow from those of others.
-const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
-/// And those that follow from the method.
-const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
-
-/// What tells one of such worlds from the others: each setting in which any of them differ, or Bond and Δt.
-pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
-    let Some(&Controls { settings, .. }) = worlds.get(index) else {
-        return String::new();
-    };
-    let any_differs = |name: &&str| {
-        worlds.iter().any(|one| one.settings.get(name) != worlds[0].settings.get(name))
-    };
-    let names = || Settings::about().map(|about| about.name).filter(any_differs);
-    let differs_in_method = any_differs(&"solver");
-    let follows = |name: &str| {
-        FOLLOWING.contains(&name) || (differs_in_method && FOLLOWING_METHOD.contains(&name))
-    };
-    let reporter: Vec<&str> = names().filter(|name| !follows(name)).collect();
-    let told: Vec<&str> = match (reporter.is_empty(), names().next()) {
-        (false, _) => reporter,
-        (true, Some(_)) => names().collect(),
-        (true, None) => vec!["bond", "dt"],
-    };
-    // Methods that are compared go by a name where they have one.
-    let named =
-        BUDGETS.iter().find(|budget| differs_in_method && budget.settings == settings.solver);
-    let is_told = |name: &&str| named.is_none() || !["solver", "max-sweeps"].contains(name);
-    let said = told.into_iter().filter(is_told).filter_map(|name| said(&settings, name));
-    let all: Vec<String> =
-        named.map(|budget| budget.name.to_owned()).into_iter().chain(said).collect();
-    all.join(", ")
-}
-
-/// A setting in a title.
-fn said(settings: &Settings, name: &str) -> Option<String> {
-    let about = Settings::about().find(|about| about.name == name)?;
-    let (symbol, unit) = (called(about), about.control.map_or("", |control| control.unit));
-    Some(match (name, settings.get(name)?) {
-        ("stepper" | "solver" | "friction-model", Value::Word(word)) => word.to_owned(),
-        ("model-solves", Value::Count(count)) => format!("{count} solves"),
-        ("max-sweeps", Value::Count(count)) => format!("{count} sweeps"),
-        (_, Value::Number(number)) => {
-            format!("{symbol} {} {unit}", written(number)).trim_end().to_owned()
-        }
-        (_, Value::Count(count)) => format!("{symbol} {count}"),
-        (_, Value::Switch(on)) => format!("{} {name}", if on { "with" } else { "without" }),
-        (_, Value::Word(word)) => format!("{name} {word}"),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::titles::title_among;
+    use crate::live::Controls;
 
     fn titles(all: &[Settings]) -> Vec<String> {
         let controls: Vec<_> =

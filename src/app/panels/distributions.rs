@@ -8,10 +8,10 @@ use egui_plot::{Bar, BarChart};
 
 use crate::Instant;
 use crate::app::axes::bare_plot;
-use crate::app::opening::TakenRun;
-use crate::app::state::AppState;
+use crate::app::context::PanelContext;
 use crate::app::theme;
-use crate::app::work::Work;
+use crate::app::watched_run::{TakenRun, WatchedRun};
+use crate::app::work::{Work, outcome_of_ended};
 use crate::granular::{Histogram, histograms};
 
 /// Least time between two moments that are counted.
@@ -19,7 +19,7 @@ const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Histograms of one world, as new as they need be.
 #[derive(Default)]
-pub(crate) struct Distributions {
+pub(super) struct Distributions {
     /// Those that were counted last.
     histograms: Vec<Histogram>,
     /// World and step that they are of, or are being counted of.
@@ -38,58 +38,56 @@ const ALL: [(&str, &str, &str); 4] = [
     ("overlap", "overlaps", "log₁₀ of the overlap in mean diameters"),
 ];
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    count(ui, state);
-    ui.horizontal_wrapped(|ui| {
-        for (name, button, _) in ALL {
-            let chosen = state.preferences.histogram == name;
-            if ui.selectable_label(chosen, button).clicked() {
-                state.preferences.histogram = name.into();
+impl Distributions {
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        self.count(ui, context.run);
+        ui.horizontal_wrapped(|ui| {
+            for (name, button, _) in ALL {
+                let chosen = context.preferences.histogram == name;
+                if ui.selectable_label(chosen, button).clicked() {
+                    context.preferences.histogram = name.into();
+                }
             }
-        }
-    });
-    let name = state.preferences.histogram.as_str();
-    let Some(histogram) =
-        state.distributions.histograms.iter().find(|found| found.quantity == name)
-    else {
-        ui.weak("Nothing is counted yet.");
-        return;
-    };
-    let about = ALL.iter().find(|(known, ..)| *known == name).map_or("", |(.., about)| about);
-    let colour = theme::world_colour(state.selected, ui.visuals().dark_mode);
-    let bars = bars(histogram);
-    bare_plot(ui, ("histogram", name), HEIGHT)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .include_y(1.0)
-        .show(ui, |plot| {
-            plot.bar_chart(BarChart::new(name, bars).color(colour));
         });
-    let total: u64 = histogram.counts.iter().sum();
-    let text = format!("{about}: {total} in all. Outer bars hold what lies beyond.");
-    ui.label(RichText::new(text).small().weak());
-}
-
-/// Has the moment that is shown counted, where it is another one, none is being counted, and the last was a while ago.
-fn count(ui: &Ui, state: &mut AppState) {
-    let Some(world) = state.world() else { return };
-    let of = Some((state.selected, world.snapshot.observables.step));
-    let counted = &mut state.distributions;
-    if let Some(outcome) = counted.coming.as_ref().and_then(Work::outcome) {
-        (counted.histograms, counted.coming) = (outcome.unwrap_or_default(), None);
-    }
-    let has_rested = counted.asked.is_none_or(|at| at.elapsed() >= INTERVAL);
-    let is_due = counted.coming.is_none() && has_rested && counted.of != of;
-    if is_due && !state.frame.seeking {
-        let run = state.take_run(state.selected);
-        let count = move |mut runs: Vec<TakenRun>, _: &_| {
-            Ok(runs.pop().map_or_else(Vec::new, |run| histograms(&run.world.simulation.moment())))
+        let name = context.preferences.histogram.as_str();
+        let Some(histogram) = self.histograms.iter().find(|found| found.quantity == name) else {
+            ui.weak("Nothing is counted yet.");
+            return;
         };
-        let counted = &mut state.distributions;
-        counted.coming = Some(Work::start(ui.ctx(), vec![run], count));
-        (counted.of, counted.asked) = (of, Some(Instant::now()));
-    } else if state.frame.playing || state.distributions.coming.is_some() {
-        ui.ctx().request_repaint_after_secs(0.1);
+        let about = ALL.iter().find(|(known, ..)| *known == name).map_or("", |(.., about)| about);
+        let colour = theme::world_colour(context.run.selected, ui.visuals().dark_mode);
+        let bars = bars(histogram);
+        bare_plot(ui, ("histogram", name), HEIGHT)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .include_y(1.0)
+            .show(ui, |plot| {
+                plot.bar_chart(BarChart::new(name, bars).color(colour));
+            });
+        let total: u64 = histogram.counts.iter().sum();
+        let text = format!("{about}: {total} in all. Outer bars hold what lies beyond.");
+        ui.label(RichText::new(text).small().weak());
+    }
+
+    /// Has the moment that is shown counted, where it is another one, none is being counted, and the last was a while ago.
+    fn count(&mut self, ui: &Ui, run: &mut WatchedRun) {
+        let Some(world) = run.world() else { return };
+        let of = Some((run.selected, world.snapshot.observables.step));
+        if let Some(outcome) = outcome_of_ended(&mut self.coming) {
+            self.histograms = outcome.unwrap_or_default();
+        }
+        let has_rested = self.asked.is_none_or(|at| at.elapsed() >= INTERVAL);
+        let is_due = self.coming.is_none() && has_rested && self.of != of;
+        if is_due && !run.frame.seeking {
+            let taken = run.take(run.selected);
+            let of_run = |run: TakenRun| histograms(&run.world.simulation.moment());
+            let count =
+                move |mut runs: Vec<_>, _: &_| Ok(runs.pop().map(of_run).unwrap_or_default());
+            self.coming = Some(Work::start(ui.ctx(), vec![taken], count));
+            (self.of, self.asked) = (of, Some(Instant::now()));
+        } else if run.frame.playing || self.coming.is_some() {
+            ui.ctx().request_repaint_after_secs(0.1);
+        }
     }
 }
 

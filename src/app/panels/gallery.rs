@@ -5,8 +5,9 @@ use egui::{
     Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, WidgetInfo,
 };
 
-use super::scene::own_style;
-use crate::app::state::AppState;
+use super::scene_style::own_style;
+use crate::app::context::{PanelContext, Request};
+use crate::app::preferences::Preferences;
 use crate::app::theme;
 use crate::config::Config;
 use crate::error::Result;
@@ -24,102 +25,110 @@ const HEIGHT: f32 = 470.0;
 
 /// Pictures that were drawn, and the style that they are in.
 #[derive(Default)]
-pub(crate) struct Gallery {
+pub(super) struct Gallery {
     style: Option<Style>,
     pictures: Vec<Option<TextureHandle>>,
     /// The pass that the last was drawn in.
     drawn_in: u64,
 }
 
-/// The list of scenes, closed until it is asked for. A click opens a scene.
-pub(super) fn show(ui: &mut Ui, state: &mut AppState, current: &str) -> Response {
-    let list = ComboBox::from_id_salt("scene").width(150.0).height(HEIGHT).selected_text(current);
-    let shown = list.show_ui(ui, |ui| {
-        follow_style(ui, state);
-        let side = PICTURE.x + ui.spacing().item_spacing.x;
-        let room = ui.ctx().content_rect().width() - 40.0;
-        let columns = ((room / side) as usize).clamp(1, MOST_COLUMNS);
-        ui.set_min_width(columns as f32 * side);
-        for &group in SceneGroup::ALL {
-            ui.label(RichText::new(group.hint()).strong());
-            egui::Grid::new(group.hint()).num_columns(columns).show(ui, |ui| {
-                let scenes = SCENES.iter().enumerate().filter(|(_, info)| info.group == group);
-                for (place, (index, info)) in scenes.enumerate() {
-                    if place > 0 && place % columns == 0 {
-                        ui.end_row();
+impl Gallery {
+    /// The list of scenes, closed until it is asked for. A click opens a scene.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PanelContext<'_>,
+        current: &str,
+    ) -> Response {
+        let list =
+            ComboBox::from_id_salt("scene").width(150.0).height(HEIGHT).selected_text(current);
+        let shown = list.show_ui(ui, |ui| {
+            self.follow_style(ui, context.preferences);
+            let side = PICTURE.x + ui.spacing().item_spacing.x;
+            let room = ui.ctx().content_rect().width() - 40.0;
+            let columns = ((room / side) as usize).clamp(1, MOST_COLUMNS);
+            ui.set_min_width(columns as f32 * side);
+            for &group in SceneGroup::ALL {
+                ui.label(RichText::new(group.hint()).strong());
+                egui::Grid::new(group.hint()).num_columns(columns).show(ui, |ui| {
+                    let scenes = SCENES.iter().enumerate().filter(|(_, info)| info.group == group);
+                    for (place, (index, info)) in scenes.enumerate() {
+                        if place > 0 && place % columns == 0 {
+                            ui.end_row();
+                        }
+                        if self.entry(ui, context, index, info, info.name == current).clicked() {
+                            context.ask(Request::Load(Config::of_scene(info.name).into()));
+                        }
                     }
-                    if entry(ui, state, index, info, info.name == current).clicked() {
-                        state.load(Config::of_scene(info.name));
-                    }
-                }
-            });
-        }
-    });
-    shown.response
-}
-
-/// Pictures of another look are drawn anew.
-fn follow_style(ui: &Ui, state: &mut AppState) {
-    let style = Style {
-        scale_bar: false,
-        legend: false,
-        show_forces: false,
-        show_velocities: false,
-        ..own_style(state, ui.visuals().dark_mode)
-    };
-    let gallery = &mut state.shown.gallery;
-    if gallery.style.as_ref() != Some(&style) {
-        *gallery = Gallery { style: Some(style), pictures: vec![None; SCENES.len()], drawn_in: 0 };
+                });
+            }
+        });
+        shown.response
     }
-}
 
-/// One scene: its picture and its name.
-fn entry(
-    ui: &mut Ui,
-    state: &mut AppState,
-    index: usize,
-    info: &SceneInfo,
-    is_open: bool,
-) -> Response {
-    let size = PICTURE + egui::vec2(0.0, NAME_HEIGHT);
-    let (cell, response) = ui.allocate_exact_size(size, Sense::click());
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, info.name));
-    state.note_control(&format!("scene {}", info.name), cell);
-    if ui.is_rect_visible(cell) {
-        let (picture, below) = cell.split_top_bottom_at_y(cell.top() + PICTURE.y);
-        paint(ui, &mut state.shown.gallery, index, info, picture);
-        let visuals = ui.style().interact_selectable(&response, is_open);
-        let stroke = if is_open || response.hovered() {
-            Stroke::new(2.0, theme::accent(ui.visuals().dark_mode))
-        } else {
-            ui.visuals().widgets.noninteractive.bg_stroke
+    /// Pictures of another look are drawn anew.
+    fn follow_style(&mut self, ui: &Ui, preferences: &Preferences) {
+        let style = Style {
+            scale_bar: false,
+            legend: false,
+            show_forces: false,
+            show_velocities: false,
+            ..own_style(preferences, ui.visuals().dark_mode)
         };
-        ui.painter().rect_stroke(picture, 2.0, stroke, StrokeKind::Inside);
-        let (font, ink) = (FontId::proportional(12.0), visuals.text_color());
-        let ink = if is_open { ui.visuals().strong_text_color() } else { ink };
-        ui.painter().text(below.center(), Align2::CENTER_CENTER, info.name, font, ink);
-    }
-    response.on_hover_text(info.summary).on_hover_cursor(CursorIcon::PointingHand)
-}
-
-/// Paints a scene's picture. Of those that are not there yet, one a frame is drawn.
-fn paint(ui: &Ui, gallery: &mut Gallery, index: usize, info: &SceneInfo, cell: Rect) {
-    let Gallery { style: Some(style), pictures, drawn_in } = gallery else { return };
-    if pictures[index].is_none() {
-        ui.ctx().request_repaint();
-        let pass = ui.ctx().cumulative_pass_nr();
-        if std::mem::replace(drawn_in, pass) == pass {
-            return;
+        if self.style.as_ref() != Some(&style) {
+            *self = Self { style: Some(style), pictures: vec![None; SCENES.len()], drawn_in: 0 };
         }
-        let size = (PICTURE * ui.pixels_per_point()).round();
-        // A scene that cannot be drawn keeps its name.
-        let image = picture(info, style, [size.x as u32, size.y as u32])
-            .unwrap_or_else(|_| ColorImage::filled([1, 1], Color32::TRANSPARENT));
-        pictures[index] = Some(ui.ctx().load_texture(info.name, image, TextureOptions::LINEAR));
     }
-    if let Some(texture) = &pictures[index] {
-        let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-        ui.painter().image(texture.id(), cell, whole, Color32::WHITE);
+
+    /// One scene: its picture and its name.
+    fn entry(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PanelContext<'_>,
+        index: usize,
+        info: &SceneInfo,
+        is_open: bool,
+    ) -> Response {
+        let size = PICTURE + egui::vec2(0.0, NAME_HEIGHT);
+        let (cell, response) = ui.allocate_exact_size(size, Sense::click());
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, info.name));
+        context.note_control(&format!("scene {}", info.name), cell);
+        if ui.is_rect_visible(cell) {
+            let (picture, below) = cell.split_top_bottom_at_y(cell.top() + PICTURE.y);
+            self.paint(ui, index, info, picture);
+            let visuals = ui.style().interact_selectable(&response, is_open);
+            let stroke = if is_open || response.hovered() {
+                Stroke::new(2.0, theme::accent(ui.visuals().dark_mode))
+            } else {
+                ui.visuals().widgets.noninteractive.bg_stroke
+            };
+            ui.painter().rect_stroke(picture, 2.0, stroke, StrokeKind::Inside);
+            let (font, ink) = (FontId::proportional(12.0), visuals.text_color());
+            let ink = if is_open { ui.visuals().strong_text_color() } else { ink };
+            ui.painter().text(below.center(), Align2::CENTER_CENTER, info.name, font, ink);
+        }
+        response.on_hover_text(info.summary).on_hover_cursor(CursorIcon::PointingHand)
+    }
+
+    /// Paints a scene's picture. Of those that are not there yet, one a frame is drawn.
+    fn paint(&mut self, ui: &Ui, index: usize, info: &SceneInfo, cell: Rect) {
+        let Self { style: Some(style), pictures, drawn_in } = self else { return };
+        if pictures[index].is_none() {
+            ui.ctx().request_repaint();
+            let pass = ui.ctx().cumulative_pass_nr();
+            if std::mem::replace(drawn_in, pass) == pass {
+                return;
+            }
+            let size = (PICTURE * ui.pixels_per_point()).round();
+            // A scene that cannot be drawn keeps its name.
+            let image = picture(info, style, [size.x as u32, size.y as u32])
+                .unwrap_or_else(|_| ColorImage::filled([1, 1], Color32::TRANSPARENT));
+            pictures[index] = Some(ui.ctx().load_texture(info.name, image, TextureOptions::LINEAR));
+        }
+        if let Some(texture) = &pictures[index] {
+            let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+            ui.painter().image(texture.id(), cell, whole, Color32::WHITE);
+        }
     }
 }
 

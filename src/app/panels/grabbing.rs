@@ -4,8 +4,10 @@
 use egui::{Color32, DragValue, PointerButton, Pos2, Rect, Response, RichText, Stroke, Ui};
 use glam::DVec2;
 
-use crate::app::state::AppState;
+use crate::app::context::PanelContext;
+use crate::app::preferences::Preferences;
 use crate::app::theme;
+use crate::app::watched_run::GrainRef;
 use crate::live::{Command, WorldFrame};
 use crate::render::Camera;
 use crate::sim::{Edit, GrainView, NEW_GRAIN_DIAMETERS, Pull, place_of};
@@ -16,28 +18,17 @@ const REACH: f32 = 8.0;
 /// What is said where a wall is drawn while time stands still.
 const STANDS_STILL: &str = "Walls go while time passes: let it (space), and draw on.";
 
-/// A grain of one of the worlds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GrainRef {
-    /// Index of the world.
-    pub world: usize,
-    /// Index of the grain.
-    pub grain: usize,
-}
-
-/// What the mouse has chosen and holds.
+/// The grain or the wall that the mouse holds.
 #[derive(Default)]
 pub struct Grabbing {
-    /// The grain whose contacts are listed.
-    pub pinned: Option<GrainRef>,
     /// The grain at the end of the mouse's spring.
     pub grabbed: Option<GrainRef>,
-    pub(crate) grip: Option<Grip>,
+    grip: Option<Grip>,
 }
 
 /// A wall in the hand of the mouse.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Grip {
+struct Grip {
     /// Index of the world.
     pub world: usize,
     /// Index of the boundary.
@@ -55,9 +46,15 @@ pub(super) struct WorldCell<'a> {
     pub camera: Camera,
     pub pixels_per_point: f64,
     pub frame: &'a WorldFrame,
+    pub response: &'a Response,
 }
 
 impl WorldCell<'_> {
+    /// The place of the mouse if it hovers here or was pressed here.
+    fn pointer(&self) -> Option<Pos2> {
+        self.response.hover_pos().or_else(|| self.response.interact_pointer_pos())
+    }
+
     fn to_world(&self, at: Pos2) -> DVec2 {
         let offset = (at - self.cell.center()) * self.pixels_per_point as f32;
         self.camera.unproject(DVec2::new(f64::from(offset.x), -f64::from(offset.y)))
@@ -86,7 +83,7 @@ impl WorldCell<'_> {
     }
 
     /// Rings around the grains that are hovered, pinned and grabbed.
-    pub(super) fn marks(&self, ui: &Ui, state: &AppState, response: &Response) {
+    pub(super) fn marks(&self, ui: &Ui, mouse: &Grabbing, context: &PanelContext<'_>) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let accent = theme::accent(ui.visuals().dark_mode);
         let ring = |grain: &GrainView, width: f32, colour: Color32| {
@@ -98,16 +95,16 @@ impl WorldCell<'_> {
             );
         };
         let grains = &self.frame.snapshot.grains;
-        if let Some(pinned) = state.mouse.pinned.filter(|pinned| pinned.world == self.index) {
+        if let Some(pinned) = context.run.pinned.filter(|pinned| pinned.world == self.index) {
             for partner in super::grain::partners(&self.frame.snapshot, pinned.grain) {
                 ring(&grains[partner], 1.5, accent);
             }
             ring(&grains[pinned.grain], 3.0, accent);
         }
-        if let Some(grabbed) = state.mouse.grabbed.filter(|grabbed| grabbed.world == self.index) {
+        if let Some(grabbed) = mouse.grabbed.filter(|grabbed| grabbed.world == self.index) {
             let grain = &grains[grabbed.grain];
             ring(grain, 2.0, accent);
-            if let Some(at) = response.interact_pointer_pos() {
+            if let Some(at) = self.response.interact_pointer_pos() {
                 let stroke = Stroke::new(2.0, accent);
                 painter.line_segment([self.to_screen(grain.position), at], stroke);
                 painter.circle_filled(at, 4.0, accent);
@@ -115,42 +112,41 @@ impl WorldCell<'_> {
             return;
         }
         let changes = ui.input(|input| input.modifiers.shift);
-        if let Some(at) = response.hover_pos().filter(|_| changes || state.mouse.grip.is_some()) {
-            return self.marks_of_hand(ui, state, at);
+        if let Some(at) = self.response.hover_pos().filter(|_| changes || mouse.grip.is_some()) {
+            return self.marks_of_hand(ui, mouse.grip, context.preferences, at);
         }
-        let hovered = response.hover_pos().and_then(|at| self.grain_at(at));
+        let hovered = self.response.hover_pos().and_then(|at| self.grain_at(at));
         if let Some(hovered) = hovered {
             ring(&grains[hovered.grain], 1.5, accent);
-            response
-                .clone()
-                .on_hover_ui_at_pointer(|ui| super::grain::describe(ui, self.frame, hovered.grain));
+            let describe = |ui: &mut Ui| super::grain::describe(ui, self.frame, hovered.grain);
+            self.response.clone().on_hover_ui_at_pointer(describe);
         }
     }
 
     /// Has the mouse act.
-    pub(super) fn mouse(&self, ui: &Ui, state: &mut AppState, response: &Response) {
-        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
+    pub(super) fn act(&self, ui: &Ui, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
+        let (response, pointer) = (self.response, self.pointer());
         let changes = ui.input(|input| input.modifiers.shift);
         if response.drag_started_by(PointerButton::Primary) {
             let pressed = ui.input(|input| input.pointer.press_origin());
             if changes {
-                state.mouse.grip = pressed.and_then(|at| self.grip_at(at));
+                mouse.grip = pressed.and_then(|at| self.grip_at(at));
             } else {
-                state.mouse.grabbed = pressed.and_then(|at| self.grain_at(at));
+                mouse.grabbed = pressed.and_then(|at| self.grain_at(at));
             }
         }
-        if state.mouse.grip.is_some_and(|grip| grip.world == self.index) {
-            self.draw_wall(state, response, pointer);
+        if mouse.grip.is_some_and(|grip| grip.world == self.index) {
+            self.draw_wall(mouse, context);
         } else {
-            self.pull_or_pan(state, response, pointer);
+            self.pull_or_pan(mouse, context);
         }
         match (response.double_clicked(), response.clicked(), changes) {
-            (_, true, true) => self.change_grains(state, pointer),
-            (true, _, false) => state.camera.frame_scene(),
+            (_, true, true) => self.change_grains(context),
+            (true, _, false) => context.camera.frame_scene(),
             (false, true, false) => {
-                state.selected = self.index;
+                context.run.selected = self.index;
                 let clicked = pointer.and_then(|at| self.grain_at(at));
-                state.mouse.pinned = clicked.filter(|grain| state.mouse.pinned != Some(*grain));
+                context.run.pinned = clicked.filter(|grain| context.run.pinned != Some(*grain));
             }
             _ => {}
         }
@@ -159,70 +155,73 @@ impl WorldCell<'_> {
                 ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let factor = f64::from(pinch) * (f64::from(scroll) / 200.0).exp();
             if factor != 1.0 {
-                state.camera.zoom(factor, at - self.cell.center());
+                context.camera.zoom(factor, at - self.cell.center());
             }
         }
     }
 
-    fn pull_or_pan(&self, state: &mut AppState, response: &Response, pointer: Option<Pos2>) {
-        let held = state.mouse.grabbed.filter(|grabbed| grabbed.world == self.index);
-        if let (Some(held), Some(at)) = (held, pointer) {
+    fn pull_or_pan(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
+        let (response, run) = (self.response, &mut *context.run);
+        let held = mouse.grabbed.filter(|grabbed| grabbed.world == self.index);
+        if let (Some(held), Some(at)) = (held, self.pointer()) {
             if response.dragged() {
                 let pull = Pull { grain: held.grain as u32, target: self.to_world(at) };
-                if state.wanted.get(self.index).is_some_and(|wanted| wanted.pull != Some(pull)) {
-                    state.wanted[self.index].pull = Some(pull);
-                    state.live.send(Command::SetPull(self.index, Some(pull)));
+                let wanted = run.wanted.get_mut(self.index);
+                if let Some(wanted) = wanted.filter(|wanted| wanted.pull != Some(pull)) {
+                    wanted.pull = Some(pull);
+                    run.live.send(Command::SetPull(self.index, Some(pull)));
                 }
             }
         } else if response.dragged() {
-            state.camera.pan(response.drag_delta());
+            context.camera.pan(response.drag_delta());
         }
         if held.is_some() && !response.dragged() {
-            state.mouse.grabbed = None;
-            state.live.send(Command::SetPull(self.index, None));
+            mouse.grabbed = None;
+            run.live.send(Command::SetPull(self.index, None));
         }
     }
 
     /// Has the wall in the hand follow the mouse, or lets go of it.
-    fn draw_wall(&self, state: &mut AppState, response: &Response, pointer: Option<Pos2>) {
-        let Some(mut grip) = state.mouse.grip else { return };
-        if !response.dragged() {
-            state.mouse.grip = None;
+    fn draw_wall(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
+        let Some(mut grip) = mouse.grip else { return };
+        if !self.response.dragged() {
+            mouse.grip = None;
             if grip.sent.is_some() {
-                state.live.send(Command::Edit(self.index, Edit::LetGo));
+                context.run.live.send(Command::Edit(self.index, Edit::LetGo));
             }
             return;
         }
         let boundaries = &self.frame.snapshot.surroundings.boundaries;
-        let (Some(at), Some(boundary)) = (pointer, boundaries.get(grip.boundary)) else { return };
-        if !state.frame.playing {
-            return state.warn(STANDS_STILL);
+        let boundary = boundaries.get(grip.boundary);
+        let (Some(at), Some(boundary)) = (self.pointer(), boundary) else { return };
+        if !context.run.frame.playing {
+            return context.warn(STANDS_STILL);
         }
         let to = goal(boundary, self.to_world(at) - grip.from_place);
         if grip.sent.is_none_or(|sent| sent.distance(to) > self.metres(0.5)) {
             grip.sent = Some(to);
-            state.mouse.grip = Some(grip);
+            mouse.grip = Some(grip);
             let edit = Edit::Draw { boundary: grip.boundary as u32, to };
-            state.live.send(Command::Edit(self.index, edit));
+            context.run.live.send(Command::Edit(self.index, edit));
         }
     }
 
     /// Takes out the grain under the mouse, or puts one where there is none.
-    fn change_grains(&self, state: &mut AppState, pointer: Option<Pos2>) {
-        let Some(at) = pointer else { return };
-        state.selected = self.index;
+    fn change_grains(&self, context: &mut PanelContext<'_>) {
+        let Some(at) = self.pointer() else { return };
+        context.run.selected = self.index;
         let edit = match self.grain_at(at) {
             Some(found) => Edit::Remove(found.grain as u32),
-            None => Edit::Add(self.new_grain(state, at)),
+            None => Edit::Add(self.new_grain(context.preferences, at)),
         };
         // Grains may go by other numbers from here on.
-        state.mouse.pinned = None;
-        state.live.send(Command::Edit(self.index, edit));
+        context.run.pinned = None;
+        context.run.live.send(Command::Edit(self.index, edit));
     }
 
-    fn new_grain(&self, state: &AppState, at: Pos2) -> Disc {
+    fn new_grain(&self, preferences: &Preferences, at: Pos2) -> Disc {
         let diameter = self.frame.snapshot.surroundings.mean_diameter;
-        let radius = 0.5 * state.preferences.new_grain_diameters * diameter;
+        let radius = 0.5 * preferences.new_grain_diameters * diameter;
         Disc { position: self.to_world(at), radius }
     }
 
@@ -243,7 +242,7 @@ impl WorldCell<'_> {
     }
 
     /// With Shift held: what a click would put in or take out, and the wall that a drag would draw.
-    fn marks_of_hand(&self, ui: &Ui, state: &AppState, at: Pos2) {
+    fn marks_of_hand(&self, ui: &Ui, grip: Option<Grip>, preferences: &Preferences, at: Pos2) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let dark = ui.visuals().dark_mode;
         if let Some(found) = self.grain_at(at) {
@@ -258,7 +257,7 @@ impl WorldCell<'_> {
         }
         let stroke = Stroke::new(1.5, theme::accent(dark));
         let boundaries = &self.frame.snapshot.surroundings.boundaries;
-        let held = state.mouse.grip.map(|grip| grip.boundary).or_else(|| self.boundary_at(at));
+        let held = grip.map(|grip| grip.boundary).or_else(|| self.boundary_at(at));
         if let Some(boundary) = held.and_then(|it| boundaries.get(it)) {
             for edge in boundary.edges() {
                 let ends = match edge {
@@ -273,7 +272,7 @@ impl WorldCell<'_> {
                 painter.line_segment(ends, Stroke { width: 3.0, ..stroke });
             }
         } else {
-            let disc = self.new_grain(state, at);
+            let disc = self.new_grain(preferences, at);
             painter.circle_stroke(at, self.points(disc.radius), stroke);
         }
     }
@@ -306,7 +305,7 @@ fn distance(boundary: &Boundary, point: DVec2) -> f64 {
     boundary.edges().iter().map(of_edge).fold(f64::INFINITY, f64::min)
 }
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn show(ui: &mut Ui, preferences: &mut Preferences) {
     ui.label(
         RichText::new(
             "With Shift held, a click on the ground puts a grain there, a click on a grain takes it out, and a drag draws \
@@ -318,7 +317,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         let hint = "Diameter of a grain that Shift click puts in, in mean diameters.";
         let label = ui.label("New grain").on_hover_text(hint);
-        let value = DragValue::new(&mut state.preferences.new_grain_diameters);
+        let value = DragValue::new(&mut preferences.new_grain_diameters);
         let value = value
             .range(NEW_GRAIN_DIAMETERS[0]..=NEW_GRAIN_DIAMETERS[1])
             .speed(0.01)

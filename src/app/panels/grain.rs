@@ -2,33 +2,34 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::Page;
-use crate::app::state::AppState;
+use crate::app::context::PanelContext;
+use crate::app::page::Page;
+use crate::app::watched_run::WatchedRun;
 use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
 /// Shows the pinned grain with its contacts; nothing where there is none.
-pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
-    let Some(pinned) = state.mouse.pinned else { return };
-    let Some(world) = state.frame.worlds.get(pinned.world) else { return };
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
+    let Some(pinned) = run.pinned else { return };
+    let Some(world) = run.frame.worlds.get(pinned.world) else { return };
     describe(ui, world, pinned.grain);
     ui.add_space(4.0);
     contacts(ui, world, pinned.grain);
     if ui.button("Unpin").clicked() {
-        state.mouse.pinned = None;
+        run.pinned = None;
     }
     ui.separator();
 }
 
 /// Shows it in a corner of the scene where its page is not open.
-pub(crate) fn show_over_scene(ui: &Ui, state: &mut AppState) {
-    if state.preferences.page == Some(Page::Pile) {
+pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
+    if context.preferences.page == Some(Page::Pile) {
         return;
     }
-    let Some(pinned) = state.mouse.pinned else { return };
-    let Some(world) = state.frame.worlds.get(pinned.world) else { return };
-    let corner = state.controls.get("scene").map_or(egui::Pos2::ZERO, egui::Rect::right_top);
+    let Some(pinned) = context.run.pinned else { return };
+    let Some(world) = context.run.frame.worlds.get(pinned.world) else { return };
+    let corner = context.controls.get("scene").map_or(egui::Pos2::ZERO, egui::Rect::right_top);
     let mut unpins = false;
     egui::Area::new(egui::Id::unique("pinned grain"))
         .pivot(egui::Align2::RIGHT_TOP)
@@ -41,7 +42,7 @@ pub(crate) fn show_over_scene(ui: &Ui, state: &mut AppState) {
             });
         });
     if unpins {
-        state.mouse.pinned = None;
+        context.run.pinned = None;
     }
 }
 
@@ -54,7 +55,7 @@ pub(super) fn unless_at_rest(velocity: f64) -> f64 {
 }
 
 /// The state of a grain, as a small table.
-pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
+pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     let grain = &world.snapshot.grains[index];
     let diameter = world.snapshot.surroundings.mean_diameter;
     ui.label(RichText::new(format!("Grain {index}")).strong());

@@ -2,8 +2,6 @@
 
 use egui::{Align2, RichText, Ui};
 
-use crate::app::state::AppState;
-
 const KEYS: [(&str, &str); 15] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
@@ -38,15 +36,15 @@ const MOUSE: [(&str, &str); 9] = [
 const FRAME: f32 = 70.0;
 
 /// Shows the overlay where it is wanted.
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    if !state.shown.help {
+pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
+    if !*is_open {
         return;
     }
     egui::Window::new("Help")
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)
         .resizable(false)
-        .open(&mut state.shown.help)
+        .open(is_open)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(440.0);
             // On a low window the end is within reach, too.

@@ -1,117 +1,34 @@
-//! The panels of the window, one a file. Each is a function of the user interface and the state.
+//! The panels of the window, one per file. A panel is a function of the user interface and of the context that panels
+//! share. It owns the state that it keeps between two frames.
 
 #![deny(dead_code, reason = "a panel that nothing shows would not be missed")]
 
-pub(super) mod compare;
+mod alarms;
+mod compare;
 mod data;
-pub(super) mod distributions;
+mod distributions;
 pub(super) mod front;
-pub(super) mod gallery;
+mod gallery;
 mod grabbing;
-pub(super) mod grain;
-pub(super) mod help;
+mod grain;
+mod help;
+mod layout;
+mod lesson_bar;
+mod pages;
 mod physics;
-pub(super) mod plots;
+mod plots;
 mod run;
-pub(super) mod scene;
+mod scene;
+mod scene_style;
 pub(super) mod see;
+mod shown_settings;
 mod solver;
-pub(super) mod speed;
-pub(super) mod status;
-pub(super) mod table;
-pub(super) mod trust;
+mod speed;
+mod status;
+mod table;
+mod trust;
 
-use egui::{CollapsingHeader, RichText, Ui};
-use serde::{Deserialize, Serialize};
-
-use super::IN_BROWSER;
-use super::state::AppState;
-
-pub use front::FRONT_SETTINGS;
-pub use grabbing::{Grabbing, GrainRef};
-
-/// A page of the sidebar, of which one is open at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Page {
-    /// What is stepped: the scene, its grains, and what a hand does to them.
-    Pile,
-    /// How it is stepped and solved.
-    Solver,
-    /// Worlds and runs side by side, and what is measured of them.
-    Compare,
-    /// How it is drawn.
-    Look,
-    /// What goes to files.
-    Save,
-}
-
-impl Page {
-    /// All of them, in their order.
-    pub const ALL: [Self; 5] = [Self::Pile, Self::Solver, Self::Compare, Self::Look, Self::Save];
-
-    /// What its tab says.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Pile => "Pile",
-            Self::Solver => "Law, solver",
-            Self::Compare => "Compare",
-            Self::Look => "Look",
-            Self::Save => "Save",
-        }
-    }
-
-    /// Shows what is on it.
-    pub(super) fn show(self, ui: &mut Ui, state: &mut AppState) {
-        // A name would make the panel as wide as it is long.
-        if state.compares() && matches!(self, Self::Solver | Self::Save) {
-            ui.label(RichText::new(format!("Of world {}", state.selected + 1)).strong());
-        }
-        match self {
-            Self::Pile => {
-                run::show(ui, state);
-                ui.separator();
-                grain::show(ui, state);
-                grabbing::show(ui, state);
-            }
-            Self::Solver => {
-                physics::show(ui, state);
-                ui.separator();
-                solver::show(ui, state);
-                // It would keep a page waiting for seconds.
-                if !IN_BROWSER {
-                    folded(ui, state, "Speed and accuracy", speed::show);
-                }
-            }
-            Self::Compare => {
-                compare::show(ui, state);
-                run::earlier_runs(ui, state);
-                ui.separator();
-                plots::choices(ui, state);
-                folded(ui, state, "Distributions", distributions::show);
-                folded(ui, state, "Grains and contacts", table::show);
-            }
-            Self::Look => see::look(ui, state),
-            Self::Save => {
-                if !IN_BROWSER {
-                    see::folder(ui, state);
-                }
-                see::pictures(ui, state);
-                ui.separator();
-                data::show(ui, state);
-                ui.separator();
-                run::command_line(ui, state);
-            }
-        }
-    }
-}
-
-/// What is computed only for those who ask for it.
-fn folded(
-    ui: &mut Ui,
-    state: &mut AppState,
-    title: &'static str,
-    show: fn(&mut Ui, &mut AppState),
-) {
-    ui.separator();
-    CollapsingHeader::new(title).show_unindented(ui, |ui| show(ui, state));
-}
+pub use grabbing::Grabbing;
+pub use layout::Panels;
+pub use scene::ScenePanel;
+pub use shown_settings::FRONT_SETTINGS;

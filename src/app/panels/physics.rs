@@ -1,26 +1,20 @@
 //! Panel: the stepper with its contact law, the numbers that are not at the front, and what all of them mean together.
 
 use egui::{RichText, Ui};
-use glam::DVec2;
 
-use super::front::FRONT_SETTINGS;
 use super::grain::{compact, si};
-use crate::app::state::AppState;
+use super::shown_settings::{FRONT_SETTINGS, shown_settings};
+use crate::app::watched_run::WatchedRun;
 use crate::app::{setting_control, theme};
 use crate::contact::range::escape_speed;
-use crate::setting::{About, Group, Needs};
 use crate::sim::{Settings, Stepper};
-use crate::world::Parameters;
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    let index = state.selected;
-    let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
-        return;
-    };
-    let before = wanted.settings;
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
+    let index = run.selected;
+    let Some((before, start)) = run.wanted_and_start() else { return };
     let mut settings = before;
     stepper_switch(ui, &mut settings);
-    for about in shown_settings(state, &before) {
+    for about in shown_settings(run, &before) {
         if FRONT_SETTINGS.contains(&about.name) {
             continue;
         }
@@ -28,28 +22,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         ui.add_space(2.0);
     }
     if settings != before {
-        state.change(index, settings);
+        run.change(index, settings);
     }
-    derived(ui, state, &settings);
-}
-
-/// The settings of the law and the time step that mean something to the scene and that the stepper reads.
-pub(super) fn shown_settings(state: &AppState, settings: &Settings) -> Vec<&'static About> {
-    let Some(physics) = state.frame.start.as_ref().map(|start| start.physics()) else {
-        return Vec::new();
-    };
-    let gravity = state.world().and_then(|world| world.gravity);
-    let has_direction = physics.axes == 2 && gravity.is_some_and(|gravity| gravity != DVec2::ZERO);
-    let is_shown = |about: &&About| {
-        let has = match about.needs {
-            Needs::Nothing => true,
-            Needs::Friction => physics.friction,
-            Needs::Cohesion => physics.cohesion,
-            Needs::Direction => has_direction,
-        };
-        has && about.control.is_some() && settings.stepper.reads(about.name)
-    };
-    Parameters::ABOUT.iter().filter(is_shown).collect()
+    derived(ui, run, &settings);
 }
 
 /// The ways to step; remedies that the chosen one does not take are left out.
@@ -76,9 +51,9 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
 }
 
 /// What the numbers mean together.
-fn derived(ui: &mut Ui, state: &AppState, settings: &Settings) {
+fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
     let parameters = &settings.parameters;
-    let Some(world) = state.world() else { return };
+    let Some(world) = run.world() else { return };
     let surroundings = &world.snapshot.surroundings;
     let (diameter, g) = (surroundings.mean_diameter, surroundings.gravity_magnitude);
     let accent = theme::accent(ui.visuals().dark_mode);

@@ -2,11 +2,12 @@
 
 use egui::{Align, Button, RichText, Ui};
 
-use super::compare::title_among;
-use super::gallery;
+use super::gallery::Gallery;
 use super::grain::compact;
-use crate::app::sharing::CHANGED;
-use crate::app::state::AppState;
+use crate::app::context::{PanelContext, Request};
+use crate::app::provenance::CHANGED;
+use crate::app::titles::title_among;
+use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES};
@@ -35,26 +36,26 @@ const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     ),
 ];
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    scene_box(ui, state);
-    if state.config.named() == Config::DEFAULT_SCENE {
-        new_pile(ui, state);
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery) {
+    scene_box(ui, context, gallery);
+    if context.run.config.named() == Config::DEFAULT_SCENE {
+        new_pile(ui, context);
     }
 }
 
 /// What makes the run again without a window.
-pub(super) fn command_line(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let copy = ui.button("Copy command line").on_hover_text(
             "The command that computes the selected world from its start with the present settings, without a \
              window and to the last digit.",
         );
         if copy.clicked()
-            && let Some(line) = state.command_line()
+            && let Some(line) = context.run.command_line()
         {
             ui.ctx().copy_text(line);
-            if state.world().is_some_and(|world| !world.is_even) {
-                state.warn(format!("The command line is copied; {CHANGED}."));
+            if context.run.world().is_some_and(|world| !world.is_even) {
+                context.warn(format!("The command line is copied; {CHANGED}."));
             }
         }
         let copy = ui.button("Copy link").on_hover_text(
@@ -62,10 +63,10 @@ pub(super) fn command_line(ui: &mut Ui, state: &mut AppState) {
              moment. Paste it into a window (Ctrl V), or give it to slump --open.",
         );
         if copy.clicked() {
-            state.copy_link(ui.ctx());
+            context.ask(Request::CopyLink);
         }
     });
-    if let Some(world) = state.world() {
+    if let Some(world) = context.run.world() {
         let text = format!("State {}", world.snapshot.state_hash());
         let hint = "A hash of where all grains are and how they move, bit by bit. Runs with the same one have come to the \
                     same state; manifest.json has it as last_state.";
@@ -73,16 +74,16 @@ pub(super) fn command_line(ui: &mut Ui, state: &mut AppState) {
     }
 }
 
-fn scene_box(ui: &mut Ui, state: &mut AppState) {
+fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery) {
     let current =
-        state.frame.start.as_ref().map_or("", |start| start.scene.name.as_str()).to_owned();
+        context.run.frame.start.as_ref().map_or("", |start| start.scene.name.as_str()).to_owned();
     ui.horizontal(|ui| {
         let label = ui.label("Scene").on_hover_text(
             "Drop a TOML scene, a CSV of discs or a saved run on the window to open it.",
         );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            let list = gallery::show(ui, state, &current).labelled_by(label.id);
-            state.note_control("scenes", list.rect);
+            let list = gallery.show(ui, context, &current).labelled_by(label.id);
+            context.note_control("scenes", list.rect);
         });
     });
     if let Some(info) = SCENES.iter().find(|info| info.name == current) {
@@ -91,10 +92,10 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// What is typed for a new pile.
-fn new_pile(ui: &mut Ui, state: &mut AppState) {
+fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let id = egui::Id::unique("new pile");
     let typed = ui.data(|data| data.get_temp::<NewPile>(id));
-    let mut pile = typed.unwrap_or_else(|| state.config.source.new_pile());
+    let mut pile = typed.unwrap_or_else(|| context.run.config.source.new_pile());
     ui.horizontal(|ui| {
         let label = ui.label("Grains");
         let grains = egui::DragValue::new(&mut pile.grains).range(1..=MOST_GRAINS).speed(2.0);
@@ -122,10 +123,10 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
             ui.selectable_value(&mut pile.deposition, way, name).on_hover_text(hint);
         }
         let fresh = ui.button("New pile").on_hover_text("Make it, and let it come to rest.");
-        state.note_control("new pile", fresh.rect);
+        context.note_control("new pile", fresh.rect);
         if fresh.clicked() {
-            let config = pile_like_this(state, &pile);
-            state.load(config);
+            let config = pile_like_this(context.run, &pile);
+            context.ask(Request::Load(config.into()));
         }
     });
     if pile.grains >= LARGE {
@@ -148,7 +149,7 @@ fn cost(grains: usize) -> String {
 }
 
 /// A new pile with the numbers that the controls show.
-fn pile_like_this(state: &AppState, pile: &NewPile) -> Config {
+fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     let &NewPile { grains, seed, box_width_in_diameters, deposition } = pile;
     let source = SceneSource {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
@@ -157,19 +158,21 @@ fn pile_like_this(state: &AppState, pile: &NewPile) -> Config {
         box_width: Some(box_width_in_diameters),
         deposition: (deposition != Deposition::default()).then_some(deposition),
         initial: None,
-        ..state.config.source.clone()
+        ..run.config.source.clone()
     };
-    let config = Config { source, ..state.config.clone() };
-    let Some(Controls { settings, .. }) = state.wanted.get(state.selected) else { return config };
-    config.with_settings(settings)
+    let config = Config { source, ..run.config.clone() };
+    match run.wanted_settings() {
+        Some(settings) => config.with_settings(&settings),
+        None => config,
+    }
 }
 
 /// Width of the fields of names, points.
 const NAME_WIDTH: f32 = 84.0;
 
 /// Earlier runs, to be gone back to, and the newest of them as a ghost; nothing where there are none.
-pub(super) fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
-    if state.frame.past.is_empty() {
+pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    if context.run.frame.past.is_empty() {
         return;
     }
     ui.horizontal(|ui| {
@@ -178,20 +181,20 @@ pub(super) fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
              The last four are kept.",
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.checkbox(&mut state.preferences.ghost, "Ghost")
+            ui.checkbox(&mut context.preferences.ghost, "Ghost")
                 .on_hover_text("Show the last of them: its curves in grey, its grains as outlines.");
         });
     });
     ui.horizontal(|ui| {
         ui.label(RichText::new("This run").size(11.5));
-        let given = state.frame.name.clone();
-        name_field(ui, state, None, &given);
+        let given = context.run.frame.name.clone();
+        name_field(ui, context.run, None, &given);
     });
-    let runs = state.frame.past.clone();
+    let runs = context.run.frame.past.clone();
     for run in runs.iter().rev() {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                name_field(ui, state, Some(run.number), &run.name);
+                name_field(ui, context.run, Some(run.number), &run.name);
                 let title = title(run);
                 let name = if run.name.is_empty() { &title } else { &run.name };
                 let text = format!("↶ {name}, {} s", compact(run.recorded_secs));
@@ -201,7 +204,7 @@ pub(super) fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
                     compact(run.recorded_secs)
                 );
                 if back.on_hover_text(hint).clicked() {
-                    state.live.send(Command::Return(run.number));
+                    context.run.live.send(Command::Return(run.number));
                 }
             });
         });
@@ -209,7 +212,7 @@ pub(super) fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// The field that names a run. What is typed is kept here until the field is left: a name comes back a step later.
-fn name_field(ui: &mut Ui, state: &mut AppState, number: Option<u64>, given: &str) {
+fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &str) {
     let id = egui::Id::unique(("name of run", number));
     let typed = ui.data(|data| data.get_temp(id));
     let mut text: String = typed.unwrap_or_else(|| given.to_owned());
@@ -218,7 +221,7 @@ fn name_field(ui: &mut Ui, state: &mut AppState, number: Option<u64>, given: &st
     let label = number.map_or("Name of this run".into(), |number| format!("Name of run {number}"));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &label));
     if response.changed() {
-        state.live.send(Command::Name(number, text.clone()));
+        run.live.send(Command::Name(number, text.clone()));
     }
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, text));
@@ -236,55 +239,5 @@ fn title(run: &PastRun) -> String {
         0 | 1 => first,
         2 => format!("{first}; {}", title_among(&controls, 1)),
         count => format!("{count} worlds, {first}"),
-    }
-}
-
-/// The run that shows as a ghost: the last one, where no more than one of its worlds was other than now. Of another comparison,
-/// a ghost would stand beside numbers that are not its own.
-pub(super) fn ghost(state: &AppState) -> Option<&PastRun> {
-    let (last, worlds) = (state.frame.past.last()?, &state.frame.worlds);
-    let others = last.worlds.iter().zip(worlds.iter());
-    let others = others.filter(|(past, now)| past.controls.settings != now.controls.settings);
-    let is_alike = last.worlds.len() == worlds.len() && others.count() <= 1;
-    (state.preferences.ghost && is_alike).then_some(last)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::preferences::Preferences;
-    use crate::live::{Live, LiveOptions};
-    use crate::sim::Settings;
-
-    #[test]
-    fn a_ghost_stands_beside_worlds_of_which_one_was_changed_and_no_others() {
-        let live = Live::spawn(LiveOptions::default()).unwrap();
-        let preferences = Preferences { ensemble: false, ..Preferences::default() };
-        let mut state = AppState::new(live, Config::default(), preferences);
-        let settle = |state: &mut AppState| {
-            while state.frame.acknowledged < state.live.sent() || state.frame.loading.is_some() {
-                state.refresh();
-            }
-        };
-        settle(&mut state);
-        let settings = *state.frame.start.as_ref().unwrap().settings();
-        state.step();
-        state.live.send(Command::Reset);
-        settle(&mut state);
-        assert!(ghost(&state).is_some(), "of the run before");
-        let mut compare = |worlds: &[Settings]| {
-            state.step();
-            state.live.send(Command::Compare(worlds.to_vec()));
-            settle(&mut state);
-            assert!(!state.frame.past.is_empty(), "the situation");
-            ghost(&state).is_some()
-        };
-        let [weak, strong] = [0.0, 50.0].map(|bond| settings.with_bond(bond));
-        assert!(!compare(&[settings, weak]), "of one world beside two");
-        assert!(compare(&[settings, strong]), "one slider was moved");
-        assert!(compare(&[settings, strong]), "none was");
-        assert!(!compare(&[weak, settings]), "of another experiment");
-        assert!(!compare(&[settings]), "of two worlds beside one");
-        assert!(compare(&[strong]), "its slider was moved");
     }
 }

@@ -3,15 +3,13 @@
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
 
-use super::grabbing::WorldCell;
-use super::run;
-use crate::app::painting::{fill, scene_callback};
-use crate::app::state::AppState;
+use super::grabbing::{Grabbing, WorldCell};
+use super::scene_style::{columns, shared_style};
+use crate::app::context::PanelContext;
+use crate::app::painting::{LegendCache, fill, scene_callback};
 use crate::app::theme;
-use crate::render::{
-    ColourBy, Legend, ScaleBar, Style, automatic_range, force_reference, scene_picture,
-    speed_reference,
-};
+use crate::app::watched_run::WatchedRun;
+use crate::render::{Legend, ScaleBar, Style, scene_picture};
 
 /// Height of a compared world's title, points.
 const TITLE_HEIGHT: f32 = 22.0;
@@ -20,67 +18,93 @@ const MOST_OUTLINES: usize = 3_000;
 /// Space between compared worlds, points.
 const GAP: f32 = 6.0;
 
-/// Shows all worlds in the space that is left.
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    let area = ui.available_rect_before_wrap();
-    ui.allocate_rect(area, Sense::hover());
-    let dark = ui.visuals().dark_mode;
-    let style = shared_style(state, dark);
-    let palette = style.theme.palette();
-    fill(ui, area, theme::color32(palette.ground));
-    if area.width() < 20.0 || area.height() < 20.0 {
-        return;
-    }
-    let pixels_per_point = ui.ctx().pixels_per_point();
-    let pixels = |rect: Rect| -> [u32; 2] {
-        let size = rect.size() * pixels_per_point;
-        [size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32]
-    };
-    if show_making(ui, state, area, &style, pixels(area)) || state.frame.worlds.is_empty() {
-        return;
-    }
-    let [width, height] = pixels(area);
-    let strip = style.legend_width(width, height) as f32 / pixels_per_point;
-    let (scenes, legend_area) = area.split_left_right_at_x(area.right() - strip);
-    let bare = Style { legend: false, ..style.clone() };
-    for (index, cell) in cells(scenes, state.frame.worlds.len()).into_iter().enumerate() {
-        world(ui, state, index, cell, &bare, pixels(cell));
-    }
-    if strip > 0.0 {
-        let world = &state.frame.worlds[state.selected];
-        let camera =
-            state.camera.camera(view(state), &bare, pixels(scenes), f64::from(pixels_per_point));
-        let legend = Legend::of(&world.snapshot, &style, &camera, style.text_px(width, height));
-        state.shown.legend.paint(ui, legend_area, legend, pixels(legend_area));
-    }
+/// The worlds, and the mouse among them.
+#[derive(Default)]
+pub struct ScenePanel {
+    /// The grain or the wall that the mouse holds.
+    pub mouse: Grabbing,
+    pub(crate) legend: LegendCache,
 }
 
-/// The style of the preferences in the window's theme, with one range for all worlds.
-pub(super) fn shared_style(state: &AppState, dark: bool) -> Style {
-    let mut style = own_style(state, dark);
-    if state.compares() {
-        let worlds = || state.frame.worlds.iter().map(|world| &world.snapshot);
-        if !matches!(style.colour_by, ColourBy::PaperGreys | ColourBy::Coordination) {
-            let ends = worlds().map(|snapshot| automatic_range(style.colour_by, snapshot).1);
-            style.range = Some((0.0, ends.fold(0.0, f64::max)));
+impl ScenePanel {
+    /// Lets go of a grain that is gone.
+    pub(crate) fn follow(&mut self, run: &WatchedRun) {
+        self.mouse.grabbed = self.mouse.grabbed.filter(|&grain| run.has(grain));
+    }
+
+    /// Shows all worlds in the space that is left.
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let area = ui.available_rect_before_wrap();
+        ui.allocate_rect(area, Sense::hover());
+        let dark = ui.visuals().dark_mode;
+        let style = shared_style(context.run, context.preferences, dark);
+        let palette = style.theme.palette();
+        fill(ui, area, theme::color32(palette.ground));
+        if area.width() < 20.0 || area.height() < 20.0 {
+            return;
         }
-        let references = worlds().map(|snapshot| force_reference(&style, snapshot));
-        style.force_reference = Some(references.fold(0.0, f64::max));
-        let speeds = worlds().map(|snapshot| speed_reference(&style, snapshot));
-        style.speed_reference = Some(speeds.fold(0.0, f64::max));
+        let pixels_per_point = ui.ctx().pixels_per_point();
+        let pixels = |rect: Rect| -> [u32; 2] {
+            let size = rect.size() * pixels_per_point;
+            [size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32]
+        };
+        if show_making(ui, context, area, &style, pixels(area))
+            || context.run.frame.worlds.is_empty()
+        {
+            return;
+        }
+        let [width, height] = pixels(area);
+        let strip = style.legend_width(width, height) as f32 / pixels_per_point;
+        let (scenes, legend_area) = area.split_left_right_at_x(area.right() - strip);
+        let bare = Style { legend: false, ..style.clone() };
+        for (index, cell) in cells(scenes, context.run.frame.worlds.len()).into_iter().enumerate() {
+            self.world(ui, context, index, cell, &bare, pixels(cell));
+        }
+        if strip > 0.0 {
+            let world = &context.run.frame.worlds[context.run.selected];
+            let camera = context.camera.camera(
+                context.run.view(),
+                &bare,
+                pixels(scenes),
+                f64::from(pixels_per_point),
+            );
+            let legend = Legend::of(&world.snapshot, &style, &camera, style.text_px(width, height));
+            self.legend.paint(ui, legend_area, legend, pixels(legend_area));
+        }
     }
-    style
-}
 
-/// The style of the preferences in the window's theme.
-pub(super) fn own_style(state: &AppState, dark: bool) -> Style {
-    let theme = if dark { crate::render::Theme::Dark } else { crate::render::Theme::Light };
-    Style { theme, ..state.preferences.style.clone() }
-}
+    /// One world: its picture, its words, and the mouse.
+    fn world(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PanelContext<'_>,
+        index: usize,
+        cell: Rect,
+        style: &Style,
+        size: [u32; 2],
+    ) {
+        let pixels_per_point = f64::from(ui.ctx().pixels_per_point());
+        let camera = context.camera.camera(context.run.view(), style, size, pixels_per_point);
+        let response =
+            ui.interact(cell, ui.scope_id().with(("world", index)), Sense::click_and_drag());
+        let frame = context.run.frame.worlds[index].clone();
+        let place =
+            WorldCell { index, cell, camera, pixels_per_point, frame: &frame, response: &response };
+        place.act(ui, &mut self.mouse, context);
 
-/// How many of `count` worlds stand in a row.
-pub(super) fn columns(count: usize) -> usize {
-    if count == 4 { 2 } else { count.min(3) }
+        // The mouse may have moved the camera.
+        let camera = context.camera.camera(context.run.view(), style, size, pixels_per_point);
+        let place = WorldCell { camera, ..place };
+        let picture = scene_picture(&frame.snapshot, style, &camera, size[0], size[1]);
+        ui.painter().with_clip_rect(cell).add(scene_callback(index, cell, picture));
+        place.ghost(ui, context);
+        place.words(ui, context, style, size);
+        paint_gravity(ui, context, index, cell);
+        place.marks(ui, &self.mouse, context);
+        if index == context.run.selected {
+            context.note_control("scene", cell);
+        }
+    }
 }
 
 /// The rectangles of `count` worlds: rows of up to three.
@@ -97,45 +121,11 @@ fn cells(area: Rect, count: usize) -> Vec<Rect> {
     (0..count).map(cell).collect()
 }
 
-pub(super) fn view(state: &AppState) -> [DVec2; 2] {
-    state.frame.start.as_ref().map_or([DVec2::ZERO, DVec2::ONE], |start| start.view)
-}
-
-/// One world: its picture, its words, and the mouse.
-fn world(
-    ui: &mut Ui,
-    state: &mut AppState,
-    index: usize,
-    cell: Rect,
-    style: &Style,
-    size: [u32; 2],
-) {
-    let pixels_per_point = f64::from(ui.ctx().pixels_per_point());
-    let camera = state.camera.camera(view(state), style, size, pixels_per_point);
-    let response = ui.interact(cell, ui.scope_id().with(("world", index)), Sense::click_and_drag());
-    let frame = state.frame.worlds[index].clone();
-    let place = WorldCell { index, cell, camera, pixels_per_point, frame: &frame };
-    place.mouse(ui, state, &response);
-
-    // The mouse may have moved the camera.
-    let camera = state.camera.camera(view(state), style, size, pixels_per_point);
-    let place = WorldCell { camera, ..place };
-    let picture = scene_picture(&frame.snapshot, style, &camera, size[0], size[1]);
-    ui.painter().with_clip_rect(cell).add(scene_callback(index, cell, picture));
-    place.ghost(ui, state);
-    place.words(ui, state, style, size);
-    paint_gravity(ui, state, index, cell);
-    place.marks(ui, state, &response);
-    if index == state.selected {
-        state.note_control("scene", cell);
-    }
-}
-
 impl WorldCell<'_> {
     /// The same world of the run before, where that had one.
-    fn ghost(&self, ui: &Ui, state: &AppState) {
-        let Some(run) = run::ghost(state) else { return };
-        if run.worlds.len() != state.frame.worlds.len() {
+    fn ghost(&self, ui: &Ui, context: &PanelContext<'_>) {
+        let Some(run) = context.ghost() else { return };
+        if run.worlds.len() != context.run.frame.worlds.len() {
             return;
         }
         let Some(world) = run.worlds.get(self.index) else { return };
@@ -155,7 +145,7 @@ impl WorldCell<'_> {
     }
 
     /// Title and label of the scale bar.
-    fn words(&self, ui: &Ui, state: &AppState, style: &Style, size: [u32; 2]) {
+    fn words(&self, ui: &Ui, context: &PanelContext<'_>, style: &Style, size: [u32; 2]) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let ink = theme::color32(style.theme.palette().ink);
         if style.scale_bar {
@@ -166,22 +156,22 @@ impl WorldCell<'_> {
             let at = self.cell.center() + offset;
             painter.text(at, Align2::LEFT_CENTER, bar.label, font, ink);
         }
-        if state.compares() {
+        if context.run.compares() {
             let colour = theme::world_colour(self.index, ui.visuals().dark_mode);
             let at = self.cell.min + egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
             painter.circle_filled(at + egui::vec2(4.0, 0.0), 4.5, colour);
-            let title = super::compare::numbered(state, self.index);
+            let title = context.run.numbered_title(self.index);
             let font = FontId::proportional(13.0);
             painter.text(at + egui::vec2(14.0, 0.0), Align2::LEFT_CENTER, title, font, ink);
-            if let Some(others) = state.others_in_short(self.index) {
+            if let Some(others) = context.ensemble.said_in_short(&context.run.frame, self.index) {
                 let below = at + egui::vec2(14.0, 16.0);
                 let font = FontId::proportional(11.0);
                 painter.text(below, Align2::LEFT_CENTER, others, font, ink);
             }
-            let slump = super::compare::slump(state, self.index);
+            let slump = context.run.slump_text(self.index);
             let at = self.cell.right_bottom() - egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
             painter.text(at, Align2::RIGHT_CENTER, slump, FontId::monospace(12.0), ink);
-            let stroke = match self.index == state.selected {
+            let stroke = match self.index == context.run.selected {
                 true => Stroke::new(2.0, colour),
                 false => Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color),
             };
@@ -191,8 +181,14 @@ impl WorldCell<'_> {
 }
 
 /// Shows it in place of the worlds, in so many pixels. True where there is anything to see.
-fn show_making(ui: &Ui, state: &mut AppState, area: Rect, style: &Style, size: [u32; 2]) -> bool {
-    let preview = state.frame.loading.as_ref().and_then(|it| it.preview.clone());
+fn show_making(
+    ui: &Ui,
+    context: &mut PanelContext<'_>,
+    area: Rect,
+    style: &Style,
+    size: [u32; 2],
+) -> bool {
+    let preview = context.run.frame.loading.as_ref().and_then(|it| it.preview.clone());
     let Some(preview) = preview else { return false };
     let [lower, upper] = preview.view;
     // Forces and velocities are those of the run alone, and the scale changes as grains come down.
@@ -206,7 +202,7 @@ fn show_making(ui: &Ui, state: &mut AppState, area: Rect, style: &Style, size: [
     let camera = style.camera(lower, upper, size[0], size[1]);
     let picture = scene_picture(&preview.snapshot, &style, &camera, size[0], size[1]);
     ui.painter().with_clip_rect(area).add(scene_callback(0, area, picture));
-    state.note_control("pile in the making", area);
+    context.note_control("pile in the making", area);
     true
 }
 
@@ -218,11 +214,11 @@ const MARGIN: f32 = 30.0;
 const STRAIGHT: f64 = 1e-9;
 
 /// Draws the arrow of a world, where it is asked for, or gravity is not straight down.
-fn paint_gravity(ui: &Ui, state: &AppState, world: usize, cell: Rect) {
+fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) {
     let shows = |gravity: &DVec2| {
-        *gravity != DVec2::ZERO && (state.preferences.gravity || is_tilted(*gravity))
+        *gravity != DVec2::ZERO && (context.preferences.gravity || is_tilted(*gravity))
     };
-    let gravity = state.frame.worlds.get(world).and_then(|world| world.gravity);
+    let gravity = context.run.frame.worlds.get(world).and_then(|world| world.gravity);
     let Some(gravity) = gravity.filter(shows) else { return };
     let along = gravity.normalize();
     let along = Vec2::new(along.x as f32, -along.y as f32);

@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use egui::{ComboBox, RichText, ThemePreference, Ui};
 use glam::DVec2;
 
-use super::scene::{columns, shared_style, view};
+use super::scene_style::{columns, own_style, shared_style};
 use crate::app::IN_BROWSER;
-use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
+use crate::app::context::PanelContext;
+use crate::app::file_names::free_path;
 use crate::app::film::{FilmFormat, FilmOrder};
-use crate::app::state::AppState;
+use crate::app::preferences::Preferences;
+use crate::app::scene_picture::{PicturedWorld, ScenePicture};
 use crate::app::work::Work;
 use crate::film::{Animation, VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
@@ -24,8 +26,8 @@ const COLOURS: [(ColourBy, &str); 5] = [
     (ColourBy::Coordination, "contacts"),
 ];
 
-pub(super) fn look(ui: &mut Ui, state: &mut AppState) {
-    let style = &mut state.preferences.style;
+pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
+    let style = &mut preferences.style;
     ui.horizontal(|ui| {
         let label = ui.label("Colour by");
         let name = COLOURS.iter().find(|(by, _)| *by == style.colour_by).map_or("", |it| it.1);
@@ -51,7 +53,7 @@ pub(super) fn look(ui: &mut Ui, state: &mut AppState) {
         ui.checkbox(&mut style.show_motions, "Motions").on_hover_text(
             "Arrows on walls and fixed discs that move; with two heads, a force that drives them.",
         );
-        ui.checkbox(&mut state.preferences.gravity, "Gravity").on_hover_text(
+        ui.checkbox(&mut preferences.gravity, "Gravity").on_hover_text(
             "An arrow where gravity points; it shows by itself where that is not straight down.",
         );
         ui.end_row();
@@ -62,35 +64,35 @@ pub(super) fn look(ui: &mut Ui, state: &mut AppState) {
             (ThemePreference::Dark, "Dark"),
             (ThemePreference::System, "System"),
         ] {
-            ui.selectable_value(&mut state.preferences.theme, preference, name);
+            ui.selectable_value(&mut preferences.theme, preference, name);
         }
     });
 }
 
 /// What saves pictures and films.
-pub(super) fn pictures(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let label = ui.label("Picture").on_hover_text("Size of saved pictures, pixels.");
         for side in 0..2 {
             if side == 1 {
                 ui.label("×");
             }
-            let size = &mut state.preferences.picture_size[side];
+            let size = &mut context.preferences.picture_size[side];
             let value = egui::DragValue::new(size).range(16..=16_384).speed(8.0);
             ui.add(value).labelled_by(label.id);
         }
         ui.label(RichText::new("px").weak());
         let save = ui.button("Save PNG").on_hover_text("What is seen here, with all worlds that are compared (S). The file says which command makes it.");
         if save.clicked() {
-            save_picture(ui.ctx(), state);
+            save_picture(ui.ctx(), context);
         }
     });
-    films(ui, state);
+    films(ui, context);
 }
 
 /// The record as a video or an animation.
-fn films(ui: &mut Ui, state: &mut AppState) {
-    if let Some((format, work)) = &state.exports.film {
+fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    if let Some((format, work)) = &context.exports.film {
         let name = format.name();
         let hint = format!("No {name} is left; what was computed stays in the window.");
         return work.show(ui, &format!("Making a {name}"), &format!("Stop {name}"), &hint);
@@ -99,9 +101,9 @@ fn films(ui: &mut Ui, state: &mut AppState) {
         let hint = "Pictures in a second of a video or a GIF, which has at most 50.";
         let label = ui.label("Film").on_hover_text(hint);
         let [least, most] = VIDEO_RATES_HZ;
-        let rate = egui::DragValue::new(&mut state.preferences.video_rate_hz).range(least..=most);
+        let rate = egui::DragValue::new(&mut context.preferences.video_rate_hz).range(least..=most);
         ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
-        let pace = format!("at the pace of watching, {}×", state.preferences.speed);
+        let pace = format!("at the pace of watching, {}×", context.preferences.speed);
         ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
@@ -114,11 +116,10 @@ fn films(ui: &mut Ui, state: &mut AppState) {
         ];
         // A page has no ffmpeg.
         for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IN_BROWSER)) {
-            let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
-            let save = ui.add_enabled(is_ready && missing.is_none(), egui::Button::new(name));
-            state.note_control(name, save.rect);
+            let save = ui.add_enabled(context.run.is_ready() && missing.is_none(), egui::Button::new(name));
+            context.note_control(name, save.rect);
             if save.clicked() {
-                save_film(ui.ctx(), state, format);
+                save_film(ui.ctx(), context, format);
             }
             let save = save.on_hover_text(hint);
             if let Some(missing) = missing {
@@ -129,9 +130,8 @@ fn films(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// Where all files go that the window writes.
-pub(super) fn folder(ui: &mut Ui, state: &mut AppState) {
+pub(super) fn folder(ui: &mut Ui, folder: &mut PathBuf) {
     ui.horizontal(|ui| {
-        let folder = &mut state.preferences.folder;
         let whole = std::path::absolute(&*folder).unwrap_or_else(|_| folder.clone());
         let hint = format!("Where saved files go: {}", whole.display());
         let label = ui.label("Folder").on_hover_text(hint);
@@ -149,14 +149,14 @@ pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
 }
 
 /// Saves the worlds as they are seen, in the size of the preferences.
-pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
-    if state.frame.worlds.is_empty() {
+pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) {
+    if context.run.frame.worlds.is_empty() {
         return;
     }
-    let style = shared_style(state, context.theme() == egui::Theme::Dark);
-    let picture = scene_picture(state, style, state.preferences.picture_size, true);
-    let stem = file_stem(state);
-    state.export(context, move |folder, printers| {
+    let style = shared_style(context.run, context.preferences, gui.theme() == egui::Theme::Dark);
+    let picture = scene_picture(context, style, context.preferences.picture_size, true);
+    let stem = context.run.file_stem();
+    context.write(gui, move |folder, printers| {
         let path = free_path(folder, &stem, "png");
         write_png(&path, &picture.draw(printers.renderer()?)?, &picture.texts)?;
         Ok(path)
@@ -164,39 +164,38 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
 }
 
 /// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
-fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) {
+fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFormat) {
     // Its scales are those of all its pictures.
-    let style = super::scene::own_style(state, context.theme() == egui::Theme::Dark);
-    let (size, rate_hz) = (state.preferences.picture_size, state.preferences.video_rate_hz);
+    let style = own_style(context.preferences, gui.theme() == egui::Theme::Dark);
+    let (size, rate_hz) = (context.preferences.picture_size, context.preferences.video_rate_hz);
     let (size, rate_hz) = match format {
         FilmFormat::Video => (size.map(|side| side.next_multiple_of(2)), rate_hz),
         FilmFormat::Gif => (size, Animation::nearest_rate_hz(rate_hz)),
     };
     let order = FilmOrder {
         format,
-        picture: scene_picture(state, style, size, false),
-        slumps: state.slumps(),
+        picture: scene_picture(context, style, size, false),
+        slumps: context.run.slumps(),
         rate_hz,
-        speed: state.preferences.speed,
-        stretch: state.exports.data.stretch,
-        folder: state.preferences.folder.clone(),
-        stem: file_stem(state),
+        speed: context.preferences.speed,
+        stretch: context.exports.data.stretch,
+        folder: context.preferences.folder.clone(),
+        stem: context.run.file_stem(),
     };
-    let worlds = 0..state.frame.worlds.len();
-    let runs: Vec<_> = worlds.map(|world| state.take_run(world)).collect();
-    let work = Work::start(context, runs, move |runs, reporter| order.make(&runs, reporter));
-    state.exports.film = Some((format, work));
+    let runs = context.run.take_all();
+    let work = Work::start(gui, runs, move |runs, reporter| order.make(&runs, reporter));
+    context.exports.film = Some((format, work));
 }
 
 /// What is seen of the worlds, of which there is one at least.
 fn scene_picture(
-    state: &AppState,
+    context: &PanelContext<'_>,
     style: Style,
     size: [u32; 2],
     is_of_a_moment: bool,
 ) -> ScenePicture {
-    let count = state.frame.worlds.len();
-    let window = state.controls.get("scene").map_or(DVec2::splat(500.0), |rect| {
+    let count = context.run.frame.worlds.len();
+    let window = context.controls.get("scene").map_or(DVec2::splat(500.0), |rect| {
         DVec2::new(f64::from(rect.width()), f64::from(rect.height()))
     });
     let (of_one, size_of_one) = if count == 1 {
@@ -204,23 +203,17 @@ fn scene_picture(
     } else {
         (Style { legend: false, ..style.clone() }, panel_size(&style, size, count, columns(count)))
     };
-    let camera = state.camera.for_picture(view(state), &of_one, size_of_one, window);
-    let worlds = state.frame.worlds.iter().enumerate().map(|(index, world)| {
+    let camera = context.camera.for_picture(context.run.view(), &of_one, size_of_one, window);
+    let worlds = context.run.frame.worlds.iter().enumerate().map(|(index, world)| {
         // What came of a world, and below it what came of others.
-        let others = state.others_in_short(index).map_or(String::new(), |text| format!("\n{text}"));
+        let others = context.ensemble.said_in_short(&context.run.frame, index);
+        let others = others.map_or(String::new(), |text| format!("\n{text}"));
         PicturedWorld {
             snapshot: world.snapshot.clone(),
-            title: super::compare::numbered(state, index),
-            note: super::compare::slump(state, index) + &others,
+            title: context.run.numbered_title(index),
+            note: context.run.slump_text(index) + &others,
         }
     });
-    let (worlds, texts) = (worlds.collect(), state.texts(is_of_a_moment));
+    let (worlds, texts) = (worlds.collect(), context.run.texts(is_of_a_moment));
     ScenePicture { worlds, columns: columns(count), style, camera, size, texts }
-}
-
-/// How the names of saved files begin.
-pub(crate) fn file_stem(state: &AppState) -> String {
-    let name = state.frame.start.as_ref().map_or("scene", |start| start.scene.name.as_str());
-    let settings: Vec<_> = state.frame.worlds.iter().map(|world| world.controls.settings).collect();
-    stem(name, &settings, state.frame.time_secs())
 }

@@ -4,7 +4,7 @@ use egui::{CollapsingHeader, ComboBox, RichText, Ui};
 
 use super::grain::compact;
 use crate::app::budget::{BUDGETS, Budget};
-use crate::app::state::AppState;
+use crate::app::watched_run::WatchedRun;
 use crate::app::{setting_control, theme};
 use crate::live::WorldFrame;
 use crate::scene::Preset;
@@ -12,24 +12,21 @@ use crate::setting::{About, Control, Group};
 use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
 use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    let index = state.selected;
-    let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
-        return;
-    };
-    let before = wanted.settings;
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
+    let index = run.selected;
+    let Some((before, start)) = run.wanted_and_start() else { return };
     let mut settings = before;
     if before.stepper.uses_method()
-        && let Some(world) = state.world()
+        && let Some(world) = run.world()
     {
         budget_buttons(ui, &mut settings, &world.snapshot.surroundings);
     }
-    readings(ui, state);
+    readings(ui, run);
     CollapsingHeader::new("Expert").show_unindented(ui, |ui| {
         expert(ui, &mut settings, start.settings(), start.physics().friction);
     });
     if settings != before {
-        state.change(index, settings);
+        run.change(index, settings);
     }
 }
 
@@ -161,8 +158,8 @@ fn residuals(last: &Observables) -> (String, &'static str) {
 }
 
 /// What the last step needed.
-fn readings(ui: &mut Ui, state: &AppState) {
-    let Some(world) = state.world() else { return };
+fn readings(ui: &mut Ui, run: &WatchedRun) {
+    let Some(world) = run.world() else { return };
     let (last, settings) = (&world.snapshot.observables, &world.controls.settings);
     egui::Grid::new("readings").num_columns(4).spacing([10.0, 3.0]).show(ui, |ui| {
         let reading = |ui: &mut Ui, name: &str, value: String, hint: &str| {

@@ -9,10 +9,9 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 use super::grain::compact;
 use crate::Instant;
 use crate::app::axes::{plot_with_axes, with_least, with_room};
-use crate::app::opening::TakenRun;
-use crate::app::state::AppState;
 use crate::app::theme;
-use crate::app::work::{Reporter, Work};
+use crate::app::watched_run::{TakenRun, WatchedRun};
+use crate::app::work::{Reporter, Work, outcome_of_ended};
 use crate::error::Result;
 use crate::live::WorldFrame;
 use crate::sim::{Settings, Simulation, StepTimes};
@@ -30,14 +29,14 @@ const TIMED_STEPS: u32 = 50;
 const TIMED_SECS: f64 = 1.0;
 
 /// What a method came to.
-pub(crate) struct RaceCurve {
+struct RaceCurve {
     method: &'static str,
     /// Time of the step (ms) and its residual, from loose to tight.
     points: Vec<[f64; 2]>,
 }
 
 /// A race on one step.
-pub(crate) struct StepRace {
+pub(super) struct StepRace {
     /// The step that they solve: simulated time, s.
     time_secs: f64,
     /// What was measured, once all of it is.
@@ -153,17 +152,17 @@ const HEIGHT: f32 = 230.0;
 /// Colours before dashes tell curves apart.
 const COLOURS: usize = 6;
 
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    if let Some(race) = &mut state.race
-        && let Some(outcome) = race.work.as_ref().and_then(Work::outcome)
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
+    if let Some(race) = race
+        && let Some(outcome) = outcome_of_ended(&mut race.work)
     {
-        (race.measured, race.work) = (outcome.unwrap_or_default(), None);
+        race.measured = outcome.unwrap_or_default();
     }
-    match state.race.as_ref().and_then(|race| race.work.as_ref()) {
+    match race.as_ref().and_then(|race| race.work.as_ref()) {
         Some(work) => work.show(ui, "Measuring", "Stop measuring", "Other methods are left out."),
-        None => measure(ui, state),
+        None => measure(ui, run, race),
     }
-    let Some(race) = state.race.as_ref().filter(|race| race.work.is_none()) else { return };
+    let Some(race) = race.as_ref().filter(|race| race.work.is_none()) else { return };
     let Measured { times, curves } = &race.measured;
     if let Some(times) = times {
         ui.label(told(times));
@@ -171,7 +170,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if curves.is_empty() {
         return;
     }
-    draw(ui, curves, now(state, race));
+    draw(ui, curves, now(run, race));
     legend(ui, curves);
     let time_secs = race.time_secs;
     let text = format!(
@@ -181,25 +180,26 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// The button that measures the step that is shown.
-fn measure(ui: &mut Ui, state: &mut AppState) {
+fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     let goes_on = |world: &&WorldFrame| world.failure.is_none();
-    let time_secs = state.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
+    let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
     let button = ui.add_enabled(time_secs.is_some(), egui::Button::new("Measure this step"));
     let hint = "Where the time of a step goes; then each method solves the step that is shown, to one tolerance after the \
                 other: some seconds.";
     let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot go on.");
     if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
-        let run = state.take_run(state.selected);
-        let work =
-            Work::start(ui.ctx(), vec![run], move |mut runs, reporter| race(runs.pop(), reporter));
+        let taken = run.take(run.selected);
+        let work = Work::start(ui.ctx(), vec![taken], move |mut runs, reporter| {
+            race(runs.pop(), reporter)
+        });
         let measured = Measured::default();
-        state.race = Some(StepRace { time_secs, measured, work: Some(work) });
+        *shown = Some(StepRace { time_secs, measured, work: Some(work) });
     }
 }
 
 /// Where the present method is on the chart of its own step: the run's own mean time, once it is at that step.
-fn now(state: &AppState, race: &StepRace) -> Option<[f64; 2]> {
-    let world = state.world()?;
+fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
+    let world = run.world()?;
     let row = &world.snapshot.observables;
     let is_of_step = (row.time_secs - race.time_secs).abs() < 2.0 * row.time_step_secs;
     let told = is_of_step && world.step_ms > 0.0 && row.residual > 0.0;

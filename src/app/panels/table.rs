@@ -3,10 +3,9 @@
 
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
-use super::GrainRef;
 use super::grain::unless_at_rest;
-use crate::app::state::AppState;
 use crate::app::theme;
+use crate::app::watched_run::{GrainRef, WatchedRun};
 use crate::sim::{ContactView, GrainView, Snapshot};
 
 /// Height of the rows that are seen, points.
@@ -16,7 +15,7 @@ const FONT: f32 = 10.5;
 
 /// What is asked of the table.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct BodyTable {
+pub(super) struct BodyTable {
     /// True where it has contacts; else it has grains.
     contacts: bool,
     /// What a row has to fulfil.
@@ -74,11 +73,10 @@ const fn column<T>(
     ShownColumn { name, width, whole, hint, value }
 }
 
-pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
-    let Some(world) = state.world() else { return };
-    let (snapshot, world) = (world.snapshot.clone(), state.selected);
-    let pinned = state.mouse.pinned.filter(|pinned| pinned.world == world);
-    let table = &mut state.shown.table;
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, table: &mut BodyTable) {
+    let Some(world) = run.world() else { return };
+    let (snapshot, world) = (world.snapshot.clone(), run.selected);
+    let pinned = run.pinned.filter(|pinned| pinned.world == world);
     ui.horizontal(|ui| {
         let before = table.contacts;
         ui.selectable_value(&mut table.contacts, false, "Grains");
@@ -108,7 +106,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
         rows(ui, table, &snapshot, &snapshot.grains, &GRAINS, is_pinned)
     };
     if let Some(grain) = clicked {
-        state.mouse.pinned = Some(GrainRef { world, grain });
+        run.pinned = Some(GrainRef { world, grain });
     }
 }
 

@@ -6,15 +6,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::{Align2, RichText, Ui};
 
+use super::alarms::alarms;
 use super::grain::compact;
-use super::status::alarms;
 use crate::Instant;
 use crate::app::IN_BROWSER;
 use crate::app::budget::{FAST, SOLVED};
+use crate::app::context::PanelContext;
 use crate::app::ensemble::on_idle_cores;
-use crate::app::state::AppState;
 use crate::app::theme;
-use crate::app::work::Work;
+use crate::app::watched_run::WatchedRun;
+use crate::app::work::{Work, outcome_of_ended};
 use crate::config::Config;
 use crate::error::Error;
 use crate::live::WorldFrame;
@@ -29,8 +30,19 @@ const OTHERWISE: &str = "mean(kinetic_energy)";
 /// Part of the steps up to which unsolved ones leave the rest worth something.
 const FEW: f64 = 0.01;
 
+/// The answer before the first one.
+const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, and hours for thousands.";
+
+/// The word in the status bar, and the list behind it.
+#[derive(Default)]
+pub(super) struct TrustPanel {
+    /// True while the list is open.
+    is_open: bool,
+    budget: Option<RunBudget>,
+}
+
 /// The budget of a run, or what there is of it.
-pub(crate) struct RunBudget {
+struct RunBudget {
     /// What it is of: the command line that the run is made by.
     of: String,
     /// Its verdict and paragraph.
@@ -40,91 +52,140 @@ pub(crate) struct RunBudget {
     failure: Option<String>,
 }
 
-/// The word on the run that is shown.
-pub(super) fn word(state: &AppState) -> Trust {
-    let Some(world) = state.world() else { return Trust::NotKnownYet };
-    const BAD: [AlarmKind; 4] = [
-        AlarmKind::NotFinite,
-        AlarmKind::GrainLost,
-        AlarmKind::GrainLeft,
-        AlarmKind::EnergyCreated,
-    ];
-    let is_bad = world.alarms.iter().any(|alarm| BAD.contains(&alarm.kind));
-    let steps = world.snapshot.observables.step.max(1);
-    let unsolved = world.unconverged_steps as f64;
-    if world.failure.is_some() || is_bad || unsolved > FEW * steps as f64 {
-        return Trust::No;
-    }
-    of_budget(state).map_or(Trust::NotKnownYet, |(trust, _)| trust)
-}
-
-/// What the budget says, where there is one of the present settings.
-fn of_budget(state: &AppState) -> Option<(Trust, String)> {
-    let budget = state.budget.as_ref()?;
-    let told = budget.told.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
-    (state.command_line().as_ref() == Some(&budget.of)).then_some(told)
-}
-
-/// The word in the status bar, which opens the list.
-pub(super) fn button(ui: &mut Ui, state: &mut AppState) {
-    let trust = word(state);
-    let dark = ui.visuals().dark_mode;
-    let colour = match trust {
-        Trust::Yes | Trust::Mostly => theme::good(dark),
-        Trust::No if !state.touring => theme::warning(dark),
-        Trust::No | Trust::NotKnownYet => ui.visuals().text_color(),
-    };
-    let text = RichText::new(format!("Can I trust this? {}", trust.words())).color(colour);
-    let button = ui.selectable_label(state.shown.trust, text);
-    state.note_control("trust", button.rect);
-    let hint =
-        "Is a number of this run the grains', the law's or the method's? A click opens the list.";
-    state.shown.trust ^= button.on_hover_text(hint).clicked();
-}
-
-/// The list, where it is open.
-pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    if !state.shown.trust {
-        // Nobody looks: idle cores are to be idle.
-        if state.budget.as_ref().is_some_and(|budget| budget.work.is_some()) {
-            state.budget = None;
+impl TrustPanel {
+    /// The word on the run that is shown.
+    fn word(&self, run: &WatchedRun) -> Trust {
+        let Some(world) = run.world() else { return Trust::NotKnownYet };
+        const BAD: [AlarmKind; 4] = [
+            AlarmKind::NotFinite,
+            AlarmKind::GrainLost,
+            AlarmKind::GrainLeft,
+            AlarmKind::EnergyCreated,
+        ];
+        let is_bad = world.alarms.iter().any(|alarm| BAD.contains(&alarm.kind));
+        let steps = world.snapshot.observables.step.max(1);
+        let unsolved = world.unconverged_steps as f64;
+        if world.failure.is_some() || is_bad || unsolved > FEW * steps as f64 {
+            return Trust::No;
         }
-        return;
+        self.of_budget(run).map_or(Trust::NotKnownYet, |(trust, _)| trust)
     }
-    follow(ui, state);
-    let mut is_open = true;
-    egui::Window::new("Can I trust this?")
-        .anchor(Align2::LEFT_BOTTOM, [12.0, -40.0])
-        .default_width(420.0)
-        .collapsible(false)
-        .resizable(false)
-        .open(&mut is_open)
-        .show(ui.ctx(), |ui| {
-            ui.set_max_width(420.0);
-            if let Some(world) = state.world() {
-                for line in solved(world) {
-                    ui.label(line);
+
+    /// What the budget says, where there is one of the present settings.
+    fn of_budget(&self, run: &WatchedRun) -> Option<(Trust, String)> {
+        let budget = self.budget.as_ref()?;
+        let told = budget.told.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        (run.command_line().as_ref() == Some(&budget.of)).then_some(told)
+    }
+
+    /// The word in the status bar, which opens the list.
+    pub(super) fn button(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let trust = self.word(context.run);
+        let dark = ui.visuals().dark_mode;
+        let colour = match trust {
+            Trust::Yes | Trust::Mostly => theme::good(dark),
+            Trust::No if !context.touring => theme::warning(dark),
+            Trust::No | Trust::NotKnownYet => ui.visuals().text_color(),
+        };
+        let text = RichText::new(format!("Can I trust this? {}", trust.words())).color(colour);
+        let button = ui.selectable_label(self.is_open, text);
+        context.note_control("trust", button.rect);
+        let hint = "Is a number of this run the grains', the law's or the method's? A click opens the list.";
+        self.is_open ^= button.on_hover_text(hint).clicked();
+    }
+
+    /// The list, where it is open.
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
+        if !self.is_open {
+            // Nobody looks: idle cores are to be idle.
+            if self.budget.as_ref().is_some_and(|budget| budget.work.is_some()) {
+                self.budget = None;
+            }
+            return;
+        }
+        self.follow(ui, context);
+        let mut is_open = true;
+        egui::Window::new("Can I trust this?")
+            .anchor(Align2::LEFT_BOTTOM, [12.0, -40.0])
+            .default_width(420.0)
+            .collapsible(false)
+            .resizable(false)
+            .open(&mut is_open)
+            .show(ui.ctx(), |ui| {
+                ui.set_max_width(420.0);
+                if let Some(world) = context.run.world() {
+                    for line in solved(world) {
+                        ui.label(line);
+                    }
                 }
-            }
-            // A lesson shows what goes wrong with open eyes.
-            let colour = match state.touring {
-                true => ui.visuals().text_color(),
-                false => theme::warning(ui.visuals().dark_mode),
-            };
-            for alarm in alarms(state) {
-                ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
-            }
-            if let (Some(said), Some(world)) =
-                (state.said_of_ensemble(state.selected), state.world())
-            {
-                let slump = world.snapshot.observables.slump;
-                ui.label(format!("● This pile slumps by {slump:.3}; {said}."))
-                    .on_hover_text(state.about_ensemble());
-            }
-            ui.separator();
-            budget(ui, state);
-        });
-    state.shown.trust &= is_open;
+                // A lesson shows what goes wrong with open eyes.
+                let colour = match context.touring {
+                    true => ui.visuals().text_color(),
+                    false => theme::warning(ui.visuals().dark_mode),
+                };
+                for alarm in alarms(context.run) {
+                    ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
+                }
+                if let (Some(said), Some(world)) = (
+                    context.ensemble.said(&context.run.frame, context.run.selected),
+                    context.run.world(),
+                ) {
+                    let slump = world.snapshot.observables.slump;
+                    ui.label(format!("● This pile slumps by {slump:.3}; {said}."))
+                        .on_hover_text(context.ensemble.about(context.run.selected));
+                }
+                ui.separator();
+                self.show_budget(ui, context.run);
+            });
+        self.is_open &= is_open;
+    }
+
+    /// What the error budget says, or how far it is.
+    fn show_budget(&self, ui: &mut Ui, run: &WatchedRun) {
+        if IN_BROWSER {
+            let text = "A page has no idle cores: slump budget, with the command line of this run, computes its error budget.";
+            ui.label(RichText::new(text).weak());
+            return;
+        }
+        let told = self.of_budget(run);
+        let Some(budget) = &self.budget else {
+            let text = "A run that went on from a file, or a scene that is no longer there, has no error budget.";
+            ui.label(RichText::new(text).weak());
+            return;
+        };
+        if let Some(failure) = &budget.failure {
+            ui.label(RichText::new(failure).weak());
+            return;
+        }
+        ui.label(told.as_ref().map_or(UNDER_WAY, |(_, answer)| answer));
+        if let Some(work) = &budget.work {
+            work.show(ui, "Error budget", "Stop", "What was found so far stays.");
+        }
+    }
+
+    /// Has the budget follow the run that is shown.
+    fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
+        if let Some(budget) = &mut self.budget
+            && let Some(outcome) = outcome_of_ended(&mut budget.work)
+        {
+            budget.failure = outcome.err().map(|error| error.to_string());
+        }
+        if IN_BROWSER {
+            return;
+        }
+        let line = context.run.command_line();
+        if self.budget.as_ref().map(|budget| &budget.of) == line.as_ref() {
+            return;
+        }
+        let is_from_start =
+            context.run.world().is_some_and(|world| world.recorded_from_secs == 0.0);
+        let settings = context.run.wanted_settings();
+        let config = settings.map(|settings| context.run.config.clone().with_settings(&settings));
+        self.budget = match (line, config) {
+            (Some(of), Some(config)) if is_from_start => Some(begin(ui, context, of, config)),
+            _ => None,
+        };
+    }
 }
 
 /// How the steps of a world were solved, a line a statement.
@@ -164,60 +225,9 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     lines
 }
 
-/// What the error budget says, or how far it is.
-fn budget(ui: &mut Ui, state: &mut AppState) {
-    if IN_BROWSER {
-        let text = "A page has no idle cores: slump budget, with the command line of this run, computes its error budget.";
-        ui.label(RichText::new(text).weak());
-        return;
-    }
-    let told = of_budget(state);
-    let Some(budget) = &state.budget else {
-        let text = "A run that went on from a file, or a scene that is no longer there, has no error budget.";
-        ui.label(RichText::new(text).weak());
-        return;
-    };
-    if let Some(failure) = &budget.failure {
-        ui.label(RichText::new(failure).weak());
-        return;
-    }
-    match &told {
-        Some((_, answer)) => ui.label(answer),
-        None => ui.label("Idle cores compute an error budget. The first answer takes a minute for a hundred grains, and hours for thousands."),
-    };
-    if let Some(work) = &budget.work {
-        work.show(ui, "Error budget", "Stop", "What was found so far stays.");
-    }
-}
-
-/// Has the budget follow the run that is shown.
-fn follow(ui: &Ui, state: &mut AppState) {
-    if let Some(budget) = &mut state.budget
-        && let Some(outcome) = budget.work.as_ref().and_then(Work::outcome)
-    {
-        budget.work = None;
-        budget.failure = outcome.err().map(|error| error.to_string());
-    }
-    if IN_BROWSER {
-        return;
-    }
-    let line = state.command_line();
-    if state.budget.as_ref().map(|budget| &budget.of) == line.as_ref() {
-        return;
-    }
-    let is_from_start = state.world().is_some_and(|world| world.recorded_from_secs == 0.0);
-    let config = state.wanted.get(state.selected).map(|wanted| {
-        let config: Config = state.config.clone();
-        config.with_settings(&wanted.settings)
-    });
-    state.budget = match (line, config) {
-        (Some(of), Some(config)) if is_from_start => Some(begin(ui, state, of, config)),
-        _ => None,
-    };
-}
-
-fn begin(ui: &Ui, state: &AppState, of: String, config: Config) -> RunBudget {
-    let quantities = if state.slumps() { Vec::new() } else { vec![OTHERWISE.to_owned()] };
+/// Begins the budget of a run.
+fn begin(ui: &Ui, context: &PanelContext<'_>, of: String, config: Config) -> RunBudget {
+    let quantities = if context.run.slumps() { Vec::new() } else { vec![OTHERWISE.to_owned()] };
     let options = BudgetOptions {
         config,
         quantities,
@@ -228,7 +238,7 @@ fn begin(ui: &Ui, state: &AppState, of: String, config: Config) -> RunBudget {
         shard: None,
     };
     let told: Arc<Mutex<Option<(Trust, String)>>> = Arc::default();
-    let states = state.ensemble.folder();
+    let states = context.ensemble.folder();
     let to = Arc::clone(&told);
     let work = Work::start(ui.ctx(), Vec::new(), move |_: Vec<()>, reporter| {
         let refuse = |error| Error::value("temporary folder", error, "one that can be made");

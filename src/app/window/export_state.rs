@@ -24,7 +24,7 @@ impl StateFile {
     }
 
     pub(super) fn write(&mut self, state: &AppState, window: &Window, devices: u32) {
-        if self.written.is_some_and(|at| at.elapsed() < INTERVAL && state.frame.playing) {
+        if self.written.is_some_and(|at| at.elapsed() < INTERVAL && state.run.frame.playing) {
             return;
         }
         self.written = Some(Instant::now());

@@ -6,7 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::app::preferences::{Preferences, StoredWindow, user_folder};
+use crate::app::preferences::{Preferences, StoredWindow};
+use crate::app::user_folder::user_folder;
 
 /// Where the file lies: in the user's configuration folder.
 fn path() -> Option<PathBuf> {

@@ -167,7 +167,7 @@ impl App {
         }
         let memory = self.context.memory(Clone::clone);
         self.context = context(&self.proxy, memory);
-        self.state.shown.legend = LegendCache::default();
+        self.state.panels.scene.legend = LegendCache::default();
         self.state.ensemble.stop();
         match WindowSurface::new(events, &window, self.renderer) {
             Ok(surface) => {
@@ -201,7 +201,7 @@ impl App {
         if let Some(file) = &mut self.state_file {
             file.write(&self.state, window, self.devices);
         }
-        if std::mem::take(&mut self.state.shown.restart_graphics) {
+        if std::mem::take(&mut self.state.restart_graphics) {
             surface.destroy_device();
             window.request_redraw();
             return;

@@ -7,10 +7,10 @@ use winit::event_loop::ActiveEventLoop;
 use winit::monitor::MonitorHandle;
 use winit::window::{Window, WindowAttributes};
 
+use crate::app::link::RunLink;
 use crate::app::opening::Opening;
 use crate::app::preferences::Preferences;
 use crate::app::session::open_session;
-use crate::app::sharing::RunLink;
 use crate::app::state::AppState;
 use crate::config::{Config, SavedState};
 use crate::error::{Error, Result};

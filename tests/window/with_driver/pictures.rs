@@ -45,6 +45,6 @@ fn the_panels_of_a_physicist() {
     let preferences = Preferences { plots: false, ..Preferences::default() };
     let mut robot = Robot::open_with_gpu(Config::default(), preferences);
     robot.clicks(&["Law, solver", "Expert", "Pile"]);
-    robot.state_mut().mouse.pinned = Some(GrainRef { world: 0, grain: 70 });
+    robot.state_mut().run.pinned = Some(GrainRef { world: 0, grain: 70 });
     check(&mut robot, "window-panels");
 }

@@ -51,7 +51,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     let mut robot = open(folder.path());
     let mut settings = robot.settings().with_bond(35.0);
     settings.parameters.time_step_secs = 2e-3;
-    robot.state_mut().change(0, settings);
+    robot.state_mut().run.change(0, settings);
     robot.take_steps(5);
     let path = written(&mut robot, |robot| robot.key(egui::Key::S), "png");
     assert_eq!(name(&path), "slump-pile-bond35-dt2e-3-0.0100s.png");
@@ -75,7 +75,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     assert_eq!(column("slump").parse::<f64>(), Ok(row.slump), "to the last bit");
     // What no command makes says so.
     settings.parameters.bond = 5.0;
-    robot.state_mut().change(0, settings);
+    robot.state_mut().run.change(0, settings);
     robot.key(egui::Key::ArrowRight);
     let path = written(&mut robot, |robot| robot.key(egui::Key::S), "png");
     assert!(self::texts(&path).0.contains_key("Changes"));

@@ -1,7 +1,5 @@
-//! How a run is told to others: by a command line, by what files say of themselves, and by a link.
-//!
-//! A link is a line of text that opens a run again: where its scene comes from, and for each world its settings,
-//! what was changed on the way, and how many steps it has taken.
+//! Links. A link is a line of text that opens a run again. It says the origin of the scene and, for each world, the
+//! settings, the changes on the way and the number of steps.
 //!
 //! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
 //!
@@ -11,81 +9,12 @@
 
 use std::sync::OnceLock;
 
-use egui::Context;
-
-use super::opening::TakenRun;
-use super::state::{AppState, Notice};
-use super::work::Work;
-use crate::config::{
-    Config, Provenance, SceneSource, asked_time_secs, joined, words_of, words_up_to,
-};
+use super::watched_run::TakenRun;
+use crate::config::{Config, SceneSource, words_of};
 use crate::error::{Error, Result};
 use crate::live::WorldPlan;
-use crate::output::Texts;
 use crate::scene::SceneInfo;
 use crate::sim::Settings;
-
-/// What is said of a run that no command line makes.
-pub(super) const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
-                       of the moment that is shown, and make another run";
-
-impl AppState {
-    /// The command line that computes the selected world from its start with the present settings, without a
-    /// window and to the last digit; none where its scene is no longer there. Changes on the way and hands that
-    /// pulled are not in it.
-    pub fn command_line(&self) -> Option<String> {
-        let run = self.provenance(self.selected, self.config.clone())?;
-        let command = ["slump".to_owned(), "--headless".to_owned()];
-        Some(joined(&[&command[..], &run.words].concat()))
-    }
-
-    /// What a world is made of; nothing where its scene is no longer there.
-    fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
-        let settings = self.wanted.get(world)?.settings;
-        let scene = self.frame.start.as_ref()?.scene.name.clone();
-        Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
-    }
-
-    /// What a file says of itself that shows all worlds; of a moment, or of all their steps.
-    pub(crate) fn texts(&self, is_of_a_moment: bool) -> Texts {
-        if !self.compares() {
-            return self.texts_of_world(0, is_of_a_moment);
-        }
-        let mut texts = Texts::default();
-        for world in 0..self.frame.worlds.len() {
-            for (keyword, text) in self.texts_of_world(world, is_of_a_moment).iter().skip(1) {
-                texts.add(format!("World {}: {keyword}", world + 1), text);
-            }
-        }
-        texts
-    }
-
-    fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
-        // How long it was to run says nothing of what it has come to.
-        let mut config = self.config.clone();
-        config.source.duration = None;
-        let run = self.provenance(world, config);
-        let (Some(run), Some(shown)) = (run, self.frame.worlds.get(world)) else {
-            return Texts::default();
-        };
-        let time_secs = asked_time_secs(shown.snapshot.observables.time_secs);
-        let mut texts = if is_of_a_moment {
-            run.texts(Some(time_secs), &words_up_to(time_secs))
-        } else {
-            let duration_secs = asked_time_secs(shown.recorded_secs);
-            run.texts(None, &["--duration".to_owned(), duration_secs.to_string()])
-        };
-        if !shown.is_even {
-            texts.add("Changes", CHANGED);
-        }
-        let from_secs = shown.recorded_from_secs;
-        if from_secs > 0.0 {
-            let said = format!("from a saved run at t = {from_secs} s, not from the start");
-            texts.add("Begun", said);
-        }
-        texts
-    }
-}
 
 /// What links begin with.
 pub(crate) const LINK_START: &str = "slump://";
@@ -134,7 +63,7 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
 
 /// The link of worlds, and true where a hand pulled or changed something in any of them, which it does not tell.
 /// Refused where the run went on from a file, or its scene is no longer there.
-fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
+pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     let source = runs.first().map(|run| run.start.config.source.clone()).unwrap_or_default();
     check_names_no_file(&source)?;
     let unchanged = Config { source, ..Config::default() };
@@ -266,35 +195,6 @@ fn shortened(text: &str) -> String {
         shown.push('…');
     }
     shown
-}
-
-/// What is said of a link that says all.
-const COPIED: &str = "The link is copied: paste it into a window, or give it to slump --open.";
-/// What is said of one that does not.
-const PULLED: &str = "The link is copied; something was pulled by hand, added or removed, or a wall drawn, which it does not \
-                      tell: it makes another run, and a session this one.";
-
-impl AppState {
-    /// Has the link of the present moment of all worlds made.
-    pub fn copy_link(&mut self, context: &Context) {
-        let worlds = 0..self.frame.worlds.len();
-        let runs: Vec<_> = worlds.map(|world| self.take_run(world)).collect();
-        self.exports.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
-    }
-
-    /// Copies the link once it is made.
-    pub(super) fn follow_link(&mut self, context: &Context) {
-        let Some(outcome) = self.exports.link.as_ref().and_then(Work::outcome) else { return };
-        self.exports.link = None;
-        match outcome {
-            Ok((text, is_pulled)) => {
-                context.copy_text(text);
-                let said = if is_pulled { PULLED } else { COPIED };
-                self.say(Notice::new(said, is_pulled));
-            }
-            Err(error) => self.warn(error.to_string()),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,81 @@
+//! The context that panels share, and their requests to the window, which carries them out once all panels are drawn.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use egui::Rect;
+
+use super::camera::SceneCamera;
+use super::ensemble::Ensemble;
+use super::exports::{Exports, Printers};
+use super::notice::Notice;
+use super::preferences::Preferences;
+use super::watched_run::WatchedRun;
+use super::work::MaySend;
+use crate::config::Config;
+use crate::error::Result;
+use crate::live::PastRun;
+
+/// A request of a panel.
+pub(crate) enum Request {
+    /// Open a scene.
+    Load(Box<Config>),
+    /// Open the file of a saved run or of a session.
+    LoadSaved(PathBuf),
+    /// Go to a lesson.
+    Visit(usize),
+    /// End the lessons.
+    LeaveLessons,
+    /// Save the moment of the selected world.
+    SaveState,
+    /// Save the session.
+    SaveSession,
+    /// Copy the link of the present moment.
+    CopyLink,
+}
+
+/// The state that panels share. Any other state that a panel keeps between two frames is its own.
+pub(crate) struct PanelContext<'a> {
+    pub run: &'a mut WatchedRun,
+    pub preferences: &'a mut Preferences,
+    pub camera: &'a mut SceneCamera,
+    pub ensemble: &'a Ensemble,
+    pub exports: &'a mut Exports,
+    pub notice: &'a mut Option<Notice>,
+    pub controls: &'a mut BTreeMap<String, Rect>,
+    /// True in a lesson.
+    pub touring: bool,
+    pub requests: Vec<Request>,
+}
+
+impl PanelContext<'_> {
+    /// Asks the window for something.
+    pub(crate) fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
+    /// Says in the status bar for a while what went wrong.
+    pub(crate) fn warn(&mut self, text: impl Into<String>) {
+        *self.notice = Some(Notice::new(text, true));
+    }
+
+    /// Has a file written into the folder of the preferences. The job says which.
+    pub(crate) fn write(
+        &mut self,
+        context: &egui::Context,
+        job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + MaySend + 'static,
+    ) {
+        let job = |folder: &Path, printers: &mut Printers, _: Vec<()>| job(folder, printers);
+        self.exports.write(context, &self.preferences.folder, Vec::new(), job);
+    }
+
+    /// Notes where a control lies.
+    pub(crate) fn note_control(&mut self, name: &str, rect: Rect) {
+        self.controls.insert(name.to_owned(), rect);
+    }
+
+    /// The earlier run that shows behind the present one.
+    pub(crate) fn ghost(&self) -> Option<&PastRun> {
+        self.run.ghost().filter(|_| self.preferences.ghost)
+    }
+}

@@ -1,0 +1,82 @@
+//! The contents of the pages of the sidebar.
+
+use egui::{CollapsingHeader, RichText, Ui};
+
+use super::distributions::Distributions;
+use super::gallery::Gallery;
+use super::speed::StepRace;
+use super::table::BodyTable;
+use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, speed, table};
+use crate::app::IN_BROWSER;
+use crate::app::context::PanelContext;
+use crate::app::page::Page;
+
+/// The state of the panels on the pages.
+#[derive(Default)]
+pub(crate) struct Pages {
+    gallery: Gallery,
+    race: Option<StepRace>,
+    distributions: Distributions,
+    table: BodyTable,
+}
+
+impl Pages {
+    /// Forgets the measurement of a step, because its run is gone.
+    pub(crate) fn forget_race(&mut self) {
+        self.race = None;
+    }
+
+    /// Shows a page.
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, page: Page) {
+        // A name would make the panel as wide as it is long.
+        if context.run.compares() && matches!(page, Page::Solver | Page::Save) {
+            let text = format!("Of world {}", context.run.selected + 1);
+            ui.label(RichText::new(text).strong());
+        }
+        match page {
+            Page::Pile => {
+                run::show(ui, context, &mut self.gallery);
+                ui.separator();
+                grain::show(ui, context.run);
+                grabbing::show(ui, context.preferences);
+            }
+            Page::Solver => {
+                physics::show(ui, context.run);
+                ui.separator();
+                solver::show(ui, context.run);
+                // It would keep a page waiting for seconds.
+                if !IN_BROWSER {
+                    let race = &mut self.race;
+                    folded(ui, "Speed and accuracy", |ui| speed::show(ui, context.run, race));
+                }
+            }
+            Page::Compare => {
+                compare::show(ui, context.run);
+                run::earlier_runs(ui, context);
+                ui.separator();
+                plots::choices(ui, context);
+                folded(ui, "Distributions", |ui| self.distributions.show(ui, context));
+                folded(ui, "Grains and contacts", |ui| {
+                    table::show(ui, context.run, &mut self.table);
+                });
+            }
+            Page::Look => see::look(ui, context.preferences),
+            Page::Save => {
+                if !IN_BROWSER {
+                    see::folder(ui, &mut context.preferences.folder);
+                }
+                see::pictures(ui, context);
+                ui.separator();
+                data::show(ui, context);
+                ui.separator();
+                run::command_line(ui, context);
+            }
+        }
+    }
+}
+
+/// What is computed only for those who ask for it.
+fn folded(ui: &mut Ui, title: &'static str, show: impl FnOnce(&mut Ui)) {
+    ui.separator();
+    CollapsingHeader::new(title).show_unindented(ui, show);
+}

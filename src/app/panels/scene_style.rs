@@ -1,0 +1,33 @@
+//! The style in which worlds are drawn, and how many of them stand in a row.
+
+use crate::app::preferences::Preferences;
+use crate::app::watched_run::WatchedRun;
+use crate::render::{ColourBy, Style, Theme, automatic_range, force_reference, speed_reference};
+
+/// The style of the preferences in the window's theme, with one range for all worlds.
+pub(super) fn shared_style(run: &WatchedRun, preferences: &Preferences, dark: bool) -> Style {
+    let mut style = own_style(preferences, dark);
+    if run.compares() {
+        let worlds = || run.frame.worlds.iter().map(|world| &world.snapshot);
+        if !matches!(style.colour_by, ColourBy::PaperGreys | ColourBy::Coordination) {
+            let ends = worlds().map(|snapshot| automatic_range(style.colour_by, snapshot).1);
+            style.range = Some((0.0, ends.fold(0.0, f64::max)));
+        }
+        let references = worlds().map(|snapshot| force_reference(&style, snapshot));
+        style.force_reference = Some(references.fold(0.0, f64::max));
+        let speeds = worlds().map(|snapshot| speed_reference(&style, snapshot));
+        style.speed_reference = Some(speeds.fold(0.0, f64::max));
+    }
+    style
+}
+
+/// The style of the preferences in the window's theme.
+pub(super) fn own_style(preferences: &Preferences, dark: bool) -> Style {
+    let theme = if dark { Theme::Dark } else { Theme::Light };
+    Style { theme, ..preferences.style.clone() }
+}
+
+/// How many of `count` worlds stand in a row.
+pub(super) fn columns(count: usize) -> usize {
+    if count == 4 { 2 } else { count.min(3) }
+}

@@ -1,0 +1,67 @@
+//! Provenance of a run: its command line, and the texts in files that it is saved to.
+
+use super::watched_run::WatchedRun;
+use crate::config::{Config, Provenance, asked_time_secs, joined, words_up_to};
+use crate::output::Texts;
+
+/// What is said of a run that no command line makes.
+pub(super) const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
+                       of the moment that is shown, and make another run";
+
+impl WatchedRun {
+    /// The command line that computes the selected world from its start with the present settings, without a
+    /// window and to the last digit; none where its scene is no longer there. Changes on the way and hands that
+    /// pulled are not in it.
+    pub fn command_line(&self) -> Option<String> {
+        let run = self.provenance(self.selected, self.config.clone())?;
+        let command = ["slump".to_owned(), "--headless".to_owned()];
+        Some(joined(&[&command[..], &run.words].concat()))
+    }
+
+    /// What a world is made of; nothing where its scene is no longer there.
+    fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
+        let settings = self.wanted.get(world)?.settings;
+        let scene = self.frame.start.as_ref()?.scene.name.clone();
+        Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
+    }
+
+    /// What a file says of itself that shows all worlds; of a moment, or of all their steps.
+    pub(crate) fn texts(&self, is_of_a_moment: bool) -> Texts {
+        if !self.compares() {
+            return self.texts_of_world(0, is_of_a_moment);
+        }
+        let mut texts = Texts::default();
+        for world in 0..self.frame.worlds.len() {
+            for (keyword, text) in self.texts_of_world(world, is_of_a_moment).iter().skip(1) {
+                texts.add(format!("World {}: {keyword}", world + 1), text);
+            }
+        }
+        texts
+    }
+
+    fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
+        // How long it was to run says nothing of what it has come to.
+        let mut config = self.config.clone();
+        config.source.duration = None;
+        let run = self.provenance(world, config);
+        let (Some(run), Some(shown)) = (run, self.frame.worlds.get(world)) else {
+            return Texts::default();
+        };
+        let time_secs = asked_time_secs(shown.snapshot.observables.time_secs);
+        let mut texts = if is_of_a_moment {
+            run.texts(Some(time_secs), &words_up_to(time_secs))
+        } else {
+            let duration_secs = asked_time_secs(shown.recorded_secs);
+            run.texts(None, &["--duration".to_owned(), duration_secs.to_string()])
+        };
+        if !shown.is_even {
+            texts.add("Changes", CHANGED);
+        }
+        let from_secs = shown.recorded_from_secs;
+        if from_secs > 0.0 {
+            let said = format!("from a saved run at t = {from_secs} s, not from the start");
+            texts.add("Begun", said);
+        }
+        texts
+    }
+}

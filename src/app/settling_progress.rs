@@ -1,0 +1,131 @@
+//! Progress of a pile that comes to rest.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use glam::DVec2;
+
+use crate::Instant;
+use crate::live::{LoadingProgress, Preview};
+use crate::scene::Settling;
+use crate::sim::{GrainView, Snapshot};
+
+/// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
+const ORDERS_OF_SETTLING: f64 = 3.5;
+/// Least time between two looks at the grains: what is faster no one sees.
+const INTERVAL: Duration = Duration::from_millis(30);
+/// Before this part is done, how long it took says nothing of how long it will take.
+const PART_THAT_TELLS: f64 = 0.05;
+
+/// What is told of a pile that is being made.
+pub(super) struct SettlingProgress {
+    begun: Instant,
+    looked: Option<Instant>,
+    preview: Option<Preview>,
+    part: f64,
+}
+
+impl SettlingProgress {
+    /// One that begins now.
+    pub(super) fn new() -> Self {
+        Self { begun: Instant::now(), looked: None, preview: None, part: 0.0 }
+    }
+
+    /// Takes in how far it has come.
+    pub(super) fn look(&mut self, settling: &Settling<'_>) -> LoadingProgress {
+        if self.looked.is_none_or(|at| at.elapsed() >= INTERVAL) {
+            self.looked = Some(Instant::now());
+            let snapshot = settling.simulation.snapshot();
+            let view = view_of(&snapshot);
+            self.preview = Some(Preview { snapshot: Arc::new(snapshot), view });
+        }
+        self.part = self.part.max(settled_part(settling));
+        let grains = settling.simulation.world().grains.len();
+        let text = if settling.rains {
+            format!("Raining a new pile of {grains}")
+        } else {
+            let fastest = settling.speed_over_rest;
+            format!("A new pile of {grains} comes to rest: fastest grain {fastest:.0} × rest")
+        };
+        let text = text + &self.left(self.begun.elapsed().as_secs_f64());
+        LoadingProgress { part: self.part as f32, text, preview: self.preview.clone() }
+    }
+
+    /// How long it may take, where that can be told, after so many seconds.
+    fn left(&self, elapsed_secs: f64) -> String {
+        if self.part < PART_THAT_TELLS {
+            return String::new();
+        }
+        let left_secs = elapsed_secs * (1.0 - self.part) / self.part;
+        if left_secs < 90.0 {
+            format!(", some {:.0} s left", left_secs.ceil())
+        } else {
+            format!(", some {:.0} min left", (left_secs / 60.0).ceil())
+        }
+    }
+}
+
+/// How much of a settling is done, 0 … 1: rain falls for a quarter of the limit at most, then the slowing down tells.
+pub(super) fn settled_part(settling: &Settling) -> f64 {
+    let rained = match settling.rains {
+        true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
+        false => 1.0,
+    };
+    let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
+    0.5 * rained * (1.0 + slowed.clamp(0.0, 1.0))
+}
+
+/// Where grains are, with the box and the base below: it shrinks as they come down.
+fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
+    let diameter = snapshot.surroundings.mean_diameter;
+    let ends = |side: DVec2| {
+        let end = |grain: &GrainView| side * grain.position + DVec2::splat(grain.radius);
+        side * snapshot.grains.iter().map(end).fold(DVec2::NEG_INFINITY, DVec2::max)
+    };
+    let (lower, upper) = (ends(DVec2::NEG_ONE), ends(DVec2::ONE));
+    [DVec2::new(lower.x, lower.y.min(0.0)) - diameter, upper + diameter]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{NewPile, settle};
+
+    #[test]
+    fn a_pile_in_the_making_is_seen_and_its_part_never_falls() {
+        let pile = NewPile { grains: 40, box_width_in_diameters: 8.0, ..NewPile::default() };
+        let mut making = SettlingProgress::new();
+        let (mut parts, mut tops) = (Vec::new(), Vec::new());
+        let mut diameter = 0.0;
+        settle(&pile, |settling| {
+            // As if each look were the first for a while.
+            making.looked = None;
+            let told = making.look(&settling);
+            let preview = told.preview.expect("something to see");
+            assert_eq!(preview.snapshot.grains.len(), 40);
+            parts.push(told.part);
+            tops.push(preview.view[1].y);
+            diameter = preview.snapshot.surroundings.mean_diameter;
+            let said = if settling.rains { "Raining a new pile of 40" } else { "A new pile of 40" };
+            assert!(told.text.starts_with(said), "{}", told.text);
+            true
+        })
+        .expect("a pile");
+        assert!(parts.is_sorted() && parts[0] < 0.1 && parts[parts.len() - 1] > 0.9, "{parts:?}");
+        // Five rows of eight lie in the box, uneven by a grain or so; the view ends a diameter above the highest.
+        let rows = 40.0 / 8.0;
+        let top = tops[tops.len() - 1] / diameter;
+        assert!((rows..rows + 3.0).contains(&top), "the view ends above the pile: {top} d");
+        assert!(tops[0] > (top + 3.0) * diameter, "the view shrinks: {tops:?}");
+    }
+
+    #[test]
+    fn time_is_told_once_something_is_known_of_it() {
+        let mut making = SettlingProgress::new();
+        making.part = 0.01;
+        assert_eq!(making.left(1.0), "");
+        making.part = 0.25;
+        assert_eq!(making.left(4.0), ", some 12 s left");
+        assert_eq!(making.left(100.0), ", some 5 min left");
+    }
+}

@@ -1,0 +1,58 @@
+//! Titles of worlds that are compared: each says which of its settings differ from those of the others.
+
+use super::budget::BUDGETS;
+use super::setting_control::{called, written};
+use crate::live::Controls;
+use crate::setting::Value;
+use crate::sim::Settings;
+
+/// Settings whose differences follow from those of others.
+const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
+/// And those that follow from the method.
+const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
+
+/// What tells one of such worlds from the others: each setting in which any of them differ, or Bond and Δt.
+pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
+    let Some(&Controls { settings, .. }) = worlds.get(index) else {
+        return String::new();
+    };
+    let any_differs = |name: &&str| {
+        worlds.iter().any(|one| one.settings.get(name) != worlds[0].settings.get(name))
+    };
+    let names = || Settings::about().map(|about| about.name).filter(any_differs);
+    let differs_in_method = any_differs(&"solver");
+    let follows = |name: &str| {
+        FOLLOWING.contains(&name) || (differs_in_method && FOLLOWING_METHOD.contains(&name))
+    };
+    let reporter: Vec<&str> = names().filter(|name| !follows(name)).collect();
+    let told: Vec<&str> = match (reporter.is_empty(), names().next()) {
+        (false, _) => reporter,
+        (true, Some(_)) => names().collect(),
+        (true, None) => vec!["bond", "dt"],
+    };
+    // Methods that are compared go by a name where they have one.
+    let named =
+        BUDGETS.iter().find(|budget| differs_in_method && budget.settings == settings.solver);
+    let is_told = |name: &&str| named.is_none() || !["solver", "max-sweeps"].contains(name);
+    let said = told.into_iter().filter(is_told).filter_map(|name| said(&settings, name));
+    let all: Vec<String> =
+        named.map(|budget| budget.name.to_owned()).into_iter().chain(said).collect();
+    all.join(", ")
+}
+
+/// A setting in a title.
+fn said(settings: &Settings, name: &str) -> Option<String> {
+    let about = Settings::about().find(|about| about.name == name)?;
+    let (symbol, unit) = (called(about), about.control.map_or("", |control| control.unit));
+    Some(match (name, settings.get(name)?) {
+        ("stepper" | "solver" | "friction-model", Value::Word(word)) => word.to_owned(),
+        ("model-solves", Value::Count(count)) => format!("{count} solves"),
+        ("max-sweeps", Value::Count(count)) => format!("{count} sweeps"),
+        (_, Value::Number(number)) => {
+            format!("{symbol} {} {unit}", written(number)).trim_end().to_owned()
+        }
+        (_, Value::Count(count)) => format!("{symbol} {count}"),
+        (_, Value::Switch(on)) => format!("{} {name}", if on { "with" } else { "without" }),
+        (_, Value::Word(word)) => format!("{name} {word}"),
+    })
+}

@@ -1,0 +1,249 @@
+//! The run that the window watches: the live run, its newest frame, the wanted controls and the selection.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+
+use glam::DVec2;
+
+use super::file_names::stem;
+use super::titles::title_among;
+use crate::config::Config;
+use crate::live::{
+    Command, Controls, Live, LiveFrame, LiveStart, PastRun, WorldFrame, WorldHistory,
+};
+use crate::sim::Settings;
+
+/// A grain of one of the worlds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GrainRef {
+    /// Index of the world.
+    pub world: usize,
+    /// Index of the grain.
+    pub grain: usize,
+}
+
+/// The run that the window shows.
+pub struct WatchedRun {
+    /// The solver's thread.
+    pub live: Live,
+    /// Its newest frame.
+    pub frame: LiveFrame,
+    /// The settings that the controls show, one entry per world. They are ahead of the frame by the commands on the way.
+    pub(crate) wanted: Vec<Controls>,
+    /// The settings that a slider of the front is being dragged to, and their world.
+    pub(crate) draft: Option<(usize, Settings)>,
+    /// The world that the controls are about.
+    pub(crate) selected: usize,
+    /// The grain whose contacts are listed.
+    pub pinned: Option<GrainRef>,
+    /// The configuration that was loaded last.
+    pub(crate) config: Config,
+}
+
+/// A run that is to be written down.
+pub(crate) struct TakenRun {
+    pub start: Arc<LiveStart>,
+    pub world: WorldHistory,
+}
+
+impl WatchedRun {
+    /// A run with nothing loaded.
+    pub(super) fn new(live: Live) -> Self {
+        Self {
+            live,
+            frame: LiveFrame::default(),
+            wanted: Vec::new(),
+            draft: None,
+            selected: 0,
+            pinned: None,
+            config: Config::default(),
+        }
+    }
+
+    /// Follows the newest frame, unless a change of the controls is on its way.
+    pub(super) fn follow_frame(&mut self) {
+        let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
+        if in_step || self.wanted.len() != self.frame.worlds.len() {
+            self.wanted = self.frame.worlds.iter().map(|world| world.controls).collect();
+        }
+        if let Some((world, settings)) = self.draft
+            && let Some(wanted) = self.wanted.get_mut(world)
+        {
+            wanted.settings = settings;
+        }
+        self.selected = self.selected.min(self.frame.worlds.len().saturating_sub(1));
+        self.pinned = self.pinned.filter(|&grain| self.has(grain));
+    }
+
+    /// True if the grain exists.
+    pub(super) fn has(&self, GrainRef { world, grain }: GrainRef) -> bool {
+        let world = self.frame.worlds.get(world);
+        world.is_some_and(|world| grain < world.snapshot.grains.len())
+    }
+
+    /// The world that the controls are about, once there is one.
+    pub fn world(&self) -> Option<&WorldFrame> {
+        self.frame.worlds.get(self.selected)
+    }
+
+    /// The settings that the controls want of the selected world.
+    pub(crate) fn wanted_settings(&self) -> Option<Settings> {
+        self.wanted.get(self.selected).map(|wanted| wanted.settings)
+    }
+
+    /// The settings that the controls want of the selected world, and the start, which has their defaults.
+    pub(crate) fn wanted_and_start(&self) -> Option<(Settings, Arc<LiveStart>)> {
+        Some((self.wanted_settings()?, self.frame.start.clone()?))
+    }
+
+    /// True if the open scene is a heap, whose slump means something.
+    pub(crate) fn slumps(&self) -> bool {
+        self.frame.start.as_ref().is_some_and(|start| start.slumps)
+    }
+
+    /// True while worlds are compared.
+    pub(crate) fn compares(&self) -> bool {
+        self.frame.worlds.len() > 1
+    }
+
+    /// True if there are worlds, and no start is being made.
+    pub(crate) fn is_ready(&self) -> bool {
+        !self.frame.worlds.is_empty() && self.frame.loading.is_none()
+    }
+
+    /// Lower left and upper right corner of the scene, m.
+    pub(crate) fn view(&self) -> [DVec2; 2] {
+        self.frame.start.as_ref().map_or([DVec2::ZERO, DVec2::ONE], |start| start.view)
+    }
+
+    /// Simulated time that the scene asks for, s.
+    pub(crate) fn duration_secs(&self) -> f64 {
+        self.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs)
+    }
+
+    /// The settings in which a world differs from the others.
+    pub(crate) fn title(&self, world: usize) -> String {
+        title_among(&self.wanted, world)
+    }
+
+    /// The title of a world after the number by which headings call it.
+    pub(crate) fn numbered_title(&self, world: usize) -> String {
+        format!("{}: {}", world + 1, self.title(world))
+    }
+
+    /// The slump of a world of a heap in words.
+    pub(crate) fn slump_text(&self, world: usize) -> String {
+        let world = self.frame.worlds.get(world).filter(|_| self.slumps());
+        world
+            .map_or_else(String::new, |world| format!("Δy {:.3}", world.snapshot.observables.slump))
+    }
+
+    /// The beginning of the names of saved files.
+    pub(crate) fn file_stem(&self) -> String {
+        let name = self.frame.start.as_ref().map_or("scene", |start| start.scene.name.as_str());
+        let worlds = self.frame.worlds.iter();
+        let settings: Vec<_> = worlds.map(|world| world.controls.settings).collect();
+        stem(name, &settings, self.frame.time_secs())
+    }
+
+    /// The last run before, if at most one of its worlds had other settings than now. A ghost of another comparison would
+    /// be next to numbers that are not its own.
+    pub(crate) fn ghost(&self) -> Option<&PastRun> {
+        let (last, worlds) = (self.frame.past.last()?, &self.frame.worlds);
+        let others = last.worlds.iter().zip(worlds.iter());
+        let others = others.filter(|(past, now)| past.controls.settings != now.controls.settings);
+        (last.worlds.len() == worlds.len() && others.count() <= 1).then_some(last)
+    }
+
+    /// Changes the settings of a world.
+    pub fn change(&mut self, world: usize, settings: Settings) {
+        if let Some(wanted) = self.wanted.get_mut(world) {
+            wanted.settings = settings;
+            self.live.send(Command::Change(world, settings));
+        }
+    }
+
+    /// Starts again with the settings that a slider was dragged to.
+    pub(crate) fn start_again_with_draft(&mut self) {
+        let Some((world, settings)) = self.draft.take() else { return };
+        let Some(wanted) = self.wanted.get_mut(world) else { return };
+        wanted.settings = settings;
+        let all = self.wanted.iter().map(|wanted| wanted.settings).collect();
+        self.live.send(Command::Compare(all));
+        self.live.send(Command::Play);
+    }
+
+    /// Releases, plays or pauses.
+    pub(crate) fn toggle_play(&mut self) {
+        let command = if self.frame.playing { Command::Pause } else { Command::Play };
+        self.live.send(command);
+    }
+
+    /// Takes one step and pauses.
+    pub fn step(&mut self) {
+        self.live.send(Command::Step);
+    }
+
+    /// Goes one step back in the recording.
+    pub(crate) fn step_back(&mut self) {
+        let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
+        let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
+        self.live.send(Command::Seek(time_secs.max(0.0)));
+    }
+
+    /// Asks for a world's run. It comes between two steps; nothing comes if that world is gone.
+    pub(crate) fn take(&mut self, world: usize) -> Receiver<TakenRun> {
+        let (sender, receiver) = channel();
+        let hand_on = move |start, world| {
+            // Whoever asked may have gone.
+            let _ = sender.send(TakenRun { start, world });
+        };
+        self.live.send(Command::Take(world, Box::new(hand_on)));
+        receiver
+    }
+
+    /// Asks for the runs of all worlds.
+    pub(crate) fn take_all(&mut self) -> Vec<Receiver<TakenRun>> {
+        (0..self.frame.worlds.len()).map(|world| self.take(world)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::scene_start::start as scene_start;
+    use crate::live::LiveOptions;
+
+    #[test]
+    fn a_ghost_stands_beside_worlds_of_which_one_was_changed_and_no_others() {
+        let mut run = WatchedRun::new(Live::spawn(LiveOptions::default()).unwrap());
+        let settle = |run: &mut WatchedRun| {
+            while run.frame.acknowledged < run.live.sent() || run.frame.loading.is_some() {
+                run.frame = run.live.latest().clone();
+            }
+        };
+        let config = Config::default();
+        let start = scene_start(&config.without_settling().unwrap(), config).unwrap();
+        run.live.send(Command::Load(Box::new(start)));
+        settle(&mut run);
+        let settings = *run.frame.start.as_ref().unwrap().settings();
+        run.step();
+        run.live.send(Command::Reset);
+        settle(&mut run);
+        assert!(run.ghost().is_some(), "of the run before");
+        let mut compare = |worlds: &[Settings]| {
+            run.step();
+            run.live.send(Command::Compare(worlds.to_vec()));
+            settle(&mut run);
+            assert!(!run.frame.past.is_empty(), "the situation");
+            run.ghost().is_some()
+        };
+        let [weak, strong] = [0.0, 50.0].map(|bond| settings.with_bond(bond));
+        assert!(!compare(&[settings, weak]), "of one world beside two");
+        assert!(compare(&[settings, strong]), "one slider was moved");
+        assert!(compare(&[settings, strong]), "none was");
+        assert!(!compare(&[weak, settings]), "of another experiment");
+        assert!(!compare(&[settings]), "of two worlds beside one");
+        assert!(compare(&[strong]), "its slider was moved");
+    }
+}

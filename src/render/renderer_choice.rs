@@ -1,0 +1,43 @@
+//! Renderers to choose from, and the kinds of GPU among them.
+
+/// Which renderer to use.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    serde::Serialize,
+    serde::Deserialize,
+    clap::ValueEnum,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum RendererChoice {
+    /// Vulkan if there is a driver, else OpenGL, else the processor.
+    #[default]
+    Auto,
+    /// Vulkan.
+    Vulkan,
+    /// OpenGL, without a window through EGL.
+    Gl,
+    /// The processor alone.
+    Cpu,
+}
+
+/// The kinds of GPU that can be asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum GpuKind {
+    Vulkan,
+    Gl,
+}
+
+impl GpuKind {
+    /// Its name on the command line.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Vulkan => "vulkan",
+            Self::Gl => "gl",
+        }
+    }
+}
