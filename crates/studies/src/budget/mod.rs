@@ -25,12 +25,10 @@ use self::quantity::{BudgetQuantity, Window};
 use self::starts::{RunValues, Starts, run, said_of};
 use crate::config::{Config, joined};
 use crate::error::{self, Error, Result};
-use crate::journal::{self, Journal};
+use crate::harness::{FinishedCase, Journal, Runner, Shard, journal};
 use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts};
-use crate::runner::{FinishedCase, Runner};
 use crate::scene::Scene;
 use crate::sim::Settings;
-use crate::sweep::Shard;
 
 /// What a budget is asked for.
 #[derive(Clone, Debug)]

@@ -8,8 +8,8 @@ use super::answer::{CauseRow, QuantityBudget};
 use super::causes::{Share, short};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points};
 use crate::error::Result;
+use crate::harness::{ReportTable, write_sheet};
 use crate::output::write_file;
-use crate::report::{ReportTable, write_sheet};
 
 pub(super) const REPORT: &str = "report.md";
 

@@ -8,7 +8,7 @@ use crate::RunResult;
 use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, PALETTE, Point, Rgb, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
-use crate::report::ReportTable;
+use crate::harness::ReportTable;
 use crate::scene::cradle;
 use crate::statistics;
 

@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
-use crate::machine::Machine;
+use crate::harness::Machine;
+use crate::harness::write_sheet;
 use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
-use crate::report::write_sheet;
 use crate::solver::worst;
 
 /// The pictures of grains, which are drawn together.

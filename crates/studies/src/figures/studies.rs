@@ -8,8 +8,8 @@ use serde_json::Value;
 use super::claims::{Alike, Claim, Verdict};
 use crate::config::Config;
 use crate::error::{Error, Result};
-use crate::results::alarms_of;
 use crate::scene::NewPile;
+use crate::sweep::alarms_of;
 use crate::{PlannedRun, RunResult, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
 macro_rules! shipped {

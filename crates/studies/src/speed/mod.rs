@@ -19,12 +19,12 @@ use std::time::Instant;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::chart::Sheet;
-use super::machine::Machine;
+use crate::chart::Sheet;
 use crate::error::Result;
+use crate::harness::Machine;
+use crate::harness::Runner;
+use crate::harness::{ReportTable, write_sheet};
 use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
-use crate::report::{ReportTable, write_sheet};
-use crate::runner::Runner;
 
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -5,8 +5,8 @@ use super::solves::{ReferenceSearch, References};
 use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::Result;
-use crate::report::ReportTable;
-use crate::runner::{Case, Runner, Threads};
+use crate::harness::ReportTable;
+use crate::harness::{Case, Runner, Threads};
 use crate::solver::SolutionSearch;
 
 const BONDS: [f64; 3] = [0.0, 20.0, 100.0];

@@ -11,8 +11,8 @@ use super::variants::{self, ChartedVariant, Family};
 use super::{Bench, ChartSection};
 use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, pareto_front, points};
 use crate::error::Result;
-use crate::report::ReportTable;
-use crate::runner::{Case, Runner, Threads};
+use crate::harness::ReportTable;
+use crate::harness::{Case, Runner, Threads};
 use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 
 /// Threshold of restitution with which nearly every step has a solution.

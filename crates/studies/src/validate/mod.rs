@@ -35,11 +35,11 @@ use clap::builder::PossibleValuesParser;
 use self::experiment::{Experiment, ExperimentCases};
 use self::runs::run_all;
 use self::variants::step_variants;
-use super::machine::Machine;
 use crate::config::parser_of;
 use crate::error::Result;
+use crate::harness::Machine;
+use crate::harness::write_sheet;
 use crate::output::{check_writable, print_line, print_text, remove_drafts, write_file};
-use crate::report::write_sheet;
 use crate::sim::Stepper;
 use crate::solver::Method;
 

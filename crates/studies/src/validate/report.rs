@@ -6,7 +6,7 @@ use super::experiment::{Agreement, PublishedQuantity};
 use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
-use crate::report::ReportTable;
+use crate::harness::ReportTable;
 use crate::solver::Method;
 use crate::statistics::mean;
 

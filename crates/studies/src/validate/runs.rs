@@ -3,7 +3,7 @@
 use super::experiment::*;
 use super::variants::{SolveBudget, StepVariant};
 use crate::error::{Error, Result};
-use crate::runner::{Case, Runner, Threads};
+use crate::harness::{Case, Runner, Threads};
 
 pub(super) struct ExperimentRuns {
     pub experiment: &'static Experiment,

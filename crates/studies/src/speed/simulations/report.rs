@@ -1,7 +1,7 @@
 //! How simulations are drawn and told.
 
 use super::*;
-use crate::report::ReportTable;
+use crate::harness::ReportTable;
 
 /// Piles from which on intervals tell something.
 const TELLING: usize = 8;

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::output::check_writable;
 
 #[derive(Clone, Debug)]
-pub(super) struct Machine {
+pub(crate) struct Machine {
     /// The program's version and commit.
     pub version: String,
     pub processor: String,
@@ -24,7 +24,7 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    pub(super) fn this(version: &str) -> Result<Self> {
+    pub(crate) fn this(version: &str) -> Result<Self> {
         let processor = processor();
         let program = std::env::current_exe().map_err(|error| Error::file("slump", error))?;
         let bytes = std::fs::read(&program).map_err(|error| Error::file(&program, error))?;
@@ -46,7 +46,7 @@ impl Machine {
 
     /// A runner of the measurements of this program on this machine, whose journal lies below `folder`. A quick pass
     /// has its own.
-    pub(super) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
+    pub(crate) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         folder: &Path,
         quick: bool,
@@ -58,7 +58,7 @@ impl Machine {
         Runner::open(name, &folder, name)
     }
 
-    pub(super) fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         let Self { version, processor, cores, date, command, .. } = self;
         let cores = if *cores == 1 { "1 core".into() } else { format!("{cores} cores") };
         format!("slump {version}; {processor}, {cores}; {date}; {command}")

@@ -1,0 +1,15 @@
+//! The harness of all experiments: cases, their journal, the runner, the machine they are timed on, and reports.
+
+mod case;
+pub(crate) mod journal;
+mod machine;
+mod report;
+mod runner;
+mod shard;
+
+pub(crate) use self::case::{Case, FinishedCase};
+pub(crate) use self::journal::Journal;
+pub(crate) use self::machine::Machine;
+pub(crate) use self::report::{ReportTable, write_sheet};
+pub(crate) use self::runner::{Runner, Threads};
+pub use self::shard::Shard;
