@@ -43,31 +43,36 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    pub(crate) fn share(self) -> Share {
+    /// The share, the name, and the subject of sentences, in which `{}` is the change.
+    const fn row(self) -> (Share, &'static str, &'static str) {
         match self {
-            Self::TimeStep | Self::Unsolved | Self::Start => Share::Method,
-            Self::ContactLaw
-            | Self::Cone
-            | Self::TouchTolerance
-            | Self::FrictionModel
-            | Self::RestitutionThreshold => Share::Law,
-            Self::Packing | Self::NumberOfGrains => Share::Grains,
+            Self::TimeStep => (Share::Method, "time step", "the {}"),
+            Self::Unsolved => {
+                (Share::Method, "what steps leave unsolved", "what steps leave unsolved")
+            }
+            Self::Start => (Share::Method, "where solves start", "the change to {}"),
+            Self::ContactLaw => {
+                (Share::Law, "contact law", "the contact law {} in place of this one")
+            }
+            Self::Cone => (Share::Law, "cone of friction", "the {}"),
+            Self::TouchTolerance => (Share::Law, "touch tolerance", "the {}"),
+            Self::FrictionModel => (Share::Law, "friction model", "friction by {}"),
+            Self::RestitutionThreshold => (Share::Law, "restitution threshold", "{}"),
+            Self::Packing => (Share::Grains, "packing", "a pile {}"),
+            Self::NumberOfGrains => (Share::Grains, "number of grains", "a pile of {}"),
         }
     }
 
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::TimeStep => "time step",
-            Self::Unsolved => "what steps leave unsolved",
-            Self::Start => "where solves start",
-            Self::ContactLaw => "contact law",
-            Self::Cone => "cone of friction",
-            Self::TouchTolerance => "touch tolerance",
-            Self::FrictionModel => "friction model",
-            Self::RestitutionThreshold => "restitution threshold",
-            Self::Packing => "packing",
-            Self::NumberOfGrains => "number of grains",
-        }
+    pub(crate) const fn share(self) -> Share {
+        self.row().0
+    }
+
+    pub(crate) const fn words(self) -> &'static str {
+        self.row().1
+    }
+
+    pub(crate) const fn subject(self) -> &'static str {
+        self.row().2
     }
 }
 

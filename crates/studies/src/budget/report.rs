@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::ErrorBudget;
-use super::answer::{CauseRow, QuantityBudget};
 use super::causes::{Share, short};
+use super::rows::{CauseRow, QuantityBudget};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points};
 use crate::error::Result;
 use crate::harness::{ReportTable, write_sheet};
