@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
+use super::studies::FinishedStudy;
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
 use crate::harness::Machine;
@@ -126,7 +127,7 @@ fn closing(studies: &StudyRunner) -> String {
         "\n## Studies\n\n| study | runs | core seconds | steps not solved as asked | largest residual \
              | not finite |\n|---|---|---|---|---|---|\n",
     );
-    for (name, (_, table)) in &studies.finished {
+    for (name, FinishedStudy { table, .. }) in &studies.finished {
         let results = || table.rows.iter().map(|(.., result)| result);
         let steps: u64 = results().map(|result| result.tally.steps).sum();
         let unsolved: u64 = results().map(|result| result.tally.unconverged_steps).sum();

@@ -3,6 +3,7 @@
 mod case;
 pub(crate) mod journal;
 mod machine;
+mod measurements;
 mod report;
 mod runner;
 mod shard;
@@ -10,6 +11,7 @@ mod shard;
 pub(crate) use self::case::{Case, FinishedCase};
 pub(crate) use self::journal::Journal;
 pub(crate) use self::machine::Machine;
+pub(crate) use self::measurements::{MeasuredCase, Measurements, RunReadings, named};
 pub(crate) use self::report::{ReportTable, write_sheet};
 pub(crate) use self::runner::{Runner, Threads};
 pub use self::shard::Shard;

@@ -1,10 +1,8 @@
 //! What an experiment is: cases that are computed, and published quantities that are held against what they come to.
 
-use serde::{Deserialize, Serialize};
-
 use super::variants::StepVariant;
 use crate::error::Result;
-use crate::number;
+pub(super) use crate::harness::{MeasuredCase, Measurements, RunReadings, named};
 use crate::statistics::{Mean, mean};
 
 pub(super) struct Experiment {
@@ -52,107 +50,6 @@ pub(super) fn seeded<T: Copy>(
 ) -> Vec<ExperimentCase> {
     let of = |&value: &T| (1..=u64::from(seeds)).map(move |seed| (value, seed));
     values.iter().flat_map(of).map(|(value, seed)| case(value, seed)).collect()
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Reading {
-    pub name: String,
-    #[serde(with = "number")]
-    pub value: f64,
-}
-
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct RunReadings {
-    pub readings: Vec<Reading>,
-    pub simulated_secs: f64,
-    pub steps: u64,
-    /// Steps that were not solved as asked. With a number of sweeps nothing is asked but those.
-    pub unsolved_steps: u64,
-    pub lost_grains: u32,
-    /// True if its state was no longer finite; it has no readings then.
-    pub blew_up: bool,
-}
-
-impl RunReadings {
-    /// A number that was measured; NaN where there is none of that name.
-    pub(super) fn reading(&self, name: &str) -> f64 {
-        let mut readings = self.readings.iter();
-        readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
-    }
-}
-
-pub(super) fn named<const COUNT: usize>(readings: [(&str, f64); COUNT]) -> Vec<Reading> {
-    readings.map(|(name, value)| Reading { name: name.to_owned(), value }).into()
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct MeasuredCase {
-    pub at: Vec<(&'static str, f64)>,
-    pub run: RunReadings,
-    pub wall_secs: f64,
-}
-
-impl MeasuredCase {
-    /// A number that tells the case from others; NaN where there is none of that name.
-    pub(super) fn at(&self, name: &str) -> f64 {
-        self.at.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
-    }
-
-    /// A number that was measured; NaN where there is none of that name.
-    pub(super) fn reading(&self, name: &str) -> f64 {
-        self.run.reading(name)
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Measurements<'a>(pub Vec<&'a MeasuredCase>);
-
-impl<'a> Measurements<'a> {
-    /// The different values of a number of the cases, rising.
-    pub(super) fn values(&self, name: &str) -> Vec<f64> {
-        let mut values: Vec<f64> = self.0.iter().map(|case| case.at(name)).collect();
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        values
-    }
-
-    pub(super) fn list(&self, name: &str) -> String {
-        self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
-    }
-
-    /// A number of the first case; 0 where there is no case.
-    pub(super) fn first(&self, name: &str) -> f64 {
-        self.0.first().map_or(0.0, |case| case.at(name))
-    }
-
-    pub(super) fn such_that(&self, holds: impl Fn(&MeasuredCase) -> bool) -> Self {
-        Self(self.0.iter().copied().filter(|case| holds(case)).collect())
-    }
-
-    pub(super) fn with(&self, name: &str, value: f64) -> Self {
-        self.such_that(|case| case.at(name) == value)
-    }
-
-    pub(super) fn by_seed<T>(&self, of: impl Fn(Self) -> T) -> Vec<T> {
-        self.values("seed").into_iter().map(|seed| of(self.with("seed", seed))).collect()
-    }
-
-    pub(super) fn readings(&self, name: &str) -> Vec<f64> {
-        self.0.iter().map(|case| case.reading(name)).collect()
-    }
-
-    /// A reading of the first case; NaN where there is no case.
-    pub(super) fn reading(&self, name: &str) -> f64 {
-        self.0.first().map_or(f64::NAN, |case| case.reading(name))
-    }
-
-    pub(super) fn points(&self, point: impl Fn(&MeasuredCase) -> (f64, f64)) -> Vec<(f64, f64)> {
-        self.0.iter().map(|case| point(case)).collect()
-    }
-
-    pub(super) fn seeds(&self) -> String {
-        format!("{} seeds", self.values("seed").len())
-    }
 }
 
 /// Where a number comes from.
