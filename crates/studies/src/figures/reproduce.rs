@@ -7,8 +7,8 @@ use std::time::Instant;
 use super::studies::FinishedStudy;
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
-use crate::harness::Machine;
-use crate::harness::write_sheet;
+
+use crate::harness::{Effort, Machine, write_sheet};
 use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
 use crate::solver::worst;
 
@@ -42,8 +42,9 @@ pub fn reproduce(
     }
     let wanted = |name: &str| names.iter().any(|asked| asked == name || asked == ALL);
     check_writable("out", folder)?;
-    let mut studies = StudyRunner::new(folder.join("studies"), quick);
-    let mut report = opening(quick);
+    let effort = Effort::new(quick);
+    let mut studies = StudyRunner::new(folder.join("studies"), effort);
+    let mut report = opening(effort);
     for info in FIGURES.iter().filter(|figure| wanted(figure.name)) {
         let begun = Instant::now();
         for study in info.studies {
@@ -52,8 +53,7 @@ pub fn reproduce(
         let mut figure = (info.make)(&studies)?;
         studies.qualify(info.studies, &mut figure.claims);
         figure.sheet.caption.extend(studies.note(info.studies));
-        let quick = if quick { " --quick" } else { "" };
-        let command = format!("slump reproduce {} --out figures{quick}", info.name);
+        let command = format!("slump reproduce {} --out figures{}", info.name, effort.option());
         write_sheet(folder, figure.name, &figure.sheet, &command)?;
         if let Some(table) = &figure.table {
             write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
@@ -80,9 +80,9 @@ pub fn reproduce(
     Ok(())
 }
 
-fn opening(quick: bool) -> String {
+fn opening(effort: Effort) -> String {
     let mut text = "# What the paper says, and what was measured\n\n".to_owned();
-    if quick {
+    if effort == Effort::Quick {
         text.push_str("Quick pass: coarser, with fewer initial states than the full one.\n\n");
     }
     text.push_str(

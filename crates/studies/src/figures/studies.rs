@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::claims::{Alike, Claim, Verdict};
 use crate::config::Config;
 use crate::error::{Error, Result};
-use crate::harness::{MeasuredCase, Measurements, RunReadings, named};
+use crate::harness::{Effort, MeasuredCase, Measurements, RunReadings, named};
 use crate::scene::NewPile;
 use crate::sweep::alarms_of;
 use crate::{PlannedRun, RunResult, RunsTable, Status, Study, SweepOptions, series_path, sweep};
@@ -84,14 +84,13 @@ pub(super) fn log_step(run: &MeasuredCase) -> f64 {
 
 pub(super) struct StudyRunner {
     folder: PathBuf,
-    /// True if studies run their quick pass.
-    pub quick: bool,
+    effort: Effort,
     pub finished: BTreeMap<&'static str, FinishedStudy>,
 }
 
 impl StudyRunner {
-    pub(super) fn new(folder: PathBuf, quick: bool) -> Self {
-        Self { folder, quick, finished: BTreeMap::new() }
+    pub(super) fn new(folder: PathBuf, effort: Effort) -> Self {
+        Self { folder, effort, finished: BTreeMap::new() }
     }
 
     pub(super) fn run(&mut self, wanted: &str) -> Result<()> {
@@ -102,7 +101,7 @@ impl StudyRunner {
             return Ok(());
         }
         let path = format!("{name}.toml");
-        let study = Study::parse(text, path.as_ref(), self.quick)?;
+        let study = Study::parse(text, path.as_ref(), self.effort == Effort::Quick)?;
         // Results of an older program's study are of no use here: they are made anew.
         let states = Some(self.folder.join("states"));
         let options = SweepOptions { redo: true, states, shard: None };
@@ -179,8 +178,7 @@ impl StudyRunner {
     }
 
     fn study_folder(&self, name: &str) -> PathBuf {
-        let pass = if self.quick { "quick" } else { "full" };
-        self.folder.join(pass).join(name)
+        self.folder.join(self.effort.name()).join(name)
     }
 
     /// A line for the caption of a figure of some studies, where one of them has run a quick pass.
@@ -217,7 +215,7 @@ mod tests {
 
     /// A claim that holds, on those runs.
     fn qualified(results: &[&RunResult]) -> Claim {
-        let mut studies = StudyRunner::new(PathBuf::new(), true);
+        let mut studies = StudyRunner::new(PathBuf::new(), Effort::Quick);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";
         let study = Study::parse(text, "pile.toml".as_ref(), true).expect("a study");
         let rows = results.iter().map(|&result| (String::new(), Config::default(), result.clone()));

@@ -6,6 +6,7 @@ use std::time::SystemTime;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::effort::Effort;
 use super::runner::Runner;
 use crate::error::{Error, Result};
 use crate::output::check_writable;
@@ -49,11 +50,10 @@ impl Machine {
     pub(crate) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         folder: &Path,
-        quick: bool,
+        effort: Effort,
         name: &str,
     ) -> Result<Runner<T>> {
-        let pass = if quick { "quick" } else { "full" };
-        let folder = folder.join("measured").join(&self.fingerprint).join(pass);
+        let folder = folder.join("measured").join(&self.fingerprint).join(effort.name());
         check_writable("out", &folder)?;
         Runner::open(name, &folder, name)
     }

@@ -1,6 +1,7 @@
 //! The harness of all experiments: cases, their journal, the runner, the machine they are timed on, and reports.
 
 mod case;
+mod effort;
 pub(crate) mod journal;
 mod machine;
 mod measurements;
@@ -9,6 +10,7 @@ mod runner;
 mod shard;
 
 pub(crate) use self::case::{Case, FinishedCase};
+pub(crate) use self::effort::Effort;
 pub(crate) use self::journal::Journal;
 pub(crate) use self::machine::Machine;
 pub(crate) use self::measurements::{MeasuredCase, Measurements, RunReadings, named};

@@ -21,9 +21,7 @@ use serde::de::DeserializeOwned;
 
 use crate::chart::Sheet;
 use crate::error::Result;
-use crate::harness::Machine;
-use crate::harness::Runner;
-use crate::harness::{ReportTable, write_sheet};
+use crate::harness::{Effort, Machine, ReportTable, Runner, write_sheet};
 use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
 
 /// Something to chart.
@@ -71,6 +69,10 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
+    fn effort(&self) -> Effort {
+        Effort::new(self.options.quick)
+    }
+
     fn states_folder(&self) -> PathBuf {
         self.options.out.join("states")
     }
@@ -79,14 +81,13 @@ impl Bench<'_> {
         &self,
         name: &str,
     ) -> Result<Runner<T>> {
-        self.machine.runner(&self.options.out, self.options.quick, name)
+        self.machine.runner(&self.options.out, self.effort(), name)
     }
 
     /// Lines below a chart: what it shows, then where it was measured.
     fn caption(&self, lines: &[&str]) -> Vec<String> {
         let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
-        let quick = if self.options.quick { "Quick pass. " } else { "" };
-        caption.push(format!("{quick}{}", self.machine.words()));
+        caption.push(format!("{}{}", self.effort().note(), self.machine.words()));
         caption
     }
 

@@ -5,8 +5,7 @@ use super::solves::{ReferenceSearch, References};
 use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::Result;
-use crate::harness::ReportTable;
-use crate::harness::{Case, Runner, Threads};
+use crate::harness::{Case, Effort, ReportTable, Runner, Threads};
 use crate::solver::SolutionSearch;
 
 const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
@@ -35,10 +34,10 @@ struct SearchedStep {
     found: References,
 }
 
-fn plans(quick: bool) -> Vec<SolutionPlan> {
-    let sizes: &[(usize, &[f64])] = match quick {
-        true => &[(138, &[0.1])],
-        false => &[(138, &[0.05, 0.1, 0.2]), (500, &[0.05, 0.1, 0.2]), (2_000, &[0.1])],
+fn plans(effort: Effort) -> Vec<SolutionPlan> {
+    let sizes: &[(usize, &[f64])] = match effort {
+        Effort::Quick => &[(138, &[0.1])],
+        Effort::Full => &[(138, &[0.05, 0.1, 0.2]), (500, &[0.05, 0.1, 0.2]), (2_000, &[0.1])],
     };
     let mut plans = Vec::new();
     for &(grains, times_secs) in sizes {
@@ -50,7 +49,7 @@ fn plans(quick: bool) -> Vec<SolutionPlan> {
                     time_steps_secs: TIME_STEPS_SECS.to_vec(),
                     times_secs: times_secs.to_vec(),
                     friction: Some(friction),
-                    ..CollectionPlan::of_size(grains, in_a_box, quick)
+                    ..CollectionPlan::of_size(grains, in_a_box, effort)
                 };
                 let state = if in_a_box { "at rest" } else { "moving" };
                 let name = format!("{grains} grains, {state}, μ {friction}");
@@ -62,18 +61,18 @@ fn plans(quick: bool) -> Vec<SolutionPlan> {
 }
 
 /// How they are looked for.
-fn search(quick: bool) -> SolutionSearch {
-    let max_sweeps = if quick { 5_000 } else { 20_000 };
+fn search(effort: Effort) -> SolutionSearch {
+    let max_sweeps = effort.pick(5_000, 20_000);
     SolutionSearch { starts: 4, seed: 1, max_sweeps, tolerance: 1e-10 }
 }
 
 /// Searches all steps, some at a time, and draws how far apart the solutions are.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let search = search(bench.options.quick);
+    let search = search(bench.effort());
     let mut all = Vec::new();
     let (columns, mut rows) =
         ("piles steps with_several median_distance largest_distance", Vec::new());
-    for SolutionPlan { name, friction, plan } in plans(bench.options.quick) {
+    for SolutionPlan { name, friction, plan } in plans(bench.effort()) {
         let found = searched(bench, &plan, search)?;
         let several = found.iter().filter(|it| it.found > 1);
         let mut distances: Vec<f64> = several.map(|it| it.spread).collect();

@@ -11,8 +11,7 @@ use super::variants::{self, ChartedVariant, Family};
 use super::{Bench, ChartSection};
 use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, pareto_front, points};
 use crate::error::Result;
-use crate::harness::ReportTable;
-use crate::harness::{Case, Runner, Threads};
+use crate::harness::{Case, Effort, ReportTable, Runner, Threads};
 use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 
 /// Threshold of restitution with which nearly every step has a solution.
@@ -48,23 +47,29 @@ struct TimedCollection {
 
 /// Times all variants over steps of 138 grains.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let quick = bench.options.quick;
-    let timer = CollectionTimer { variants: with_bounds(variants::of_problems(!quick)) };
-    let limit_secs = if quick { 0.02 } else { 0.2 };
-    let pick = if quick { CollectionPlan::fewer_piles } else { CollectionPlan::piles };
+    let effort = bench.effort();
+    let timer =
+        CollectionTimer { variants: with_bounds(variants::of_problems(effort == Effort::Full)) };
+    let limit_secs = effort.pick(0.02, 0.2);
     let mut all = Vec::new();
     for (label, threshold, title) in [
         ("steps", THRESHOLD, "steps, restitution from 2 g·Δt up"),
         ("steps-paper", 0.0, "steps, restitution as in the paper"),
     ] {
-        all.push(timer.time(bench, label, &pick(threshold), title, limit_secs)?);
+        all.push(timer.time(
+            bench,
+            label,
+            &CollectionPlan::piles(threshold, effort),
+            title,
+            limit_secs,
+        )?);
     }
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
 
 /// Times all variants over steps of piles of all sizes, which begin to slump or rest in their box.
 pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let quick = bench.options.quick;
+    let effort = bench.effort();
     let timer = CollectionTimer { variants: with_bounds(variants::of_problems(false)) };
     let mut sections = Vec::new();
     for (name, in_a_box, state) in
@@ -72,8 +77,8 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     {
         let mut all = Vec::new();
         for grains in SIZES {
-            let plan = CollectionPlan::of_size(grains, in_a_box, quick);
-            let limit_secs = if quick { 1e-4 } else { 5e-4 } * grains as f64;
+            let plan = CollectionPlan::of_size(grains, in_a_box, effort);
+            let limit_secs = effort.pick(1e-4, 5e-4) * grains as f64;
             let title = format!("steps of {grains} grains {state}");
             all.push(timer.time(bench, "sizes", &plan, &title, limit_secs)?);
         }
@@ -296,13 +301,13 @@ fn efforts(name: &str, all: &[TimedCollection]) -> ReportTable {
 
 #[cfg(test)]
 mod tests {
-    use super::super::solves::Effort;
+    use super::super::solves::TimedSolve;
     use super::*;
 
     #[test]
     fn a_front_takes_the_best_of_a_family_and_a_solve_that_ended_stays_as_good() {
         let solves = |efforts: &[(f64, f64)]| {
-            let effort = |&(secs, error): &(f64, f64)| Effort { sweeps: 1, secs, error };
+            let effort = |&(secs, error): &(f64, f64)| TimedSolve { sweeps: 1, secs, error };
             TimedSolves(efforts.iter().map(effort).collect())
         };
         let variants = vec![variants::of_method(Method::Nsgs), variants::of_method(Method::Jacobi)];

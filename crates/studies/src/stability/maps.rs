@@ -23,6 +23,7 @@ use super::table::colour;
 use super::{TriedVariant, VARIANTS, jitter};
 use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, Sheet, points};
 use crate::error::{Error, Result};
+use crate::harness::Effort;
 use crate::scene::Scene;
 use crate::scene::stability::{
     breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
@@ -62,8 +63,8 @@ const fn sweeps(to: f64) -> Parameter {
 
 impl Parameter {
     /// A dozen values in ratio, half of them in a quick pass, each with the edges of its cell.
-    fn values(&self, quick: bool) -> Vec<(f64, [f64; 2])> {
-        let count = if quick { 6 } else { 12 };
+    fn values(&self, effort: Effort) -> Vec<(f64, [f64; 2])> {
+        let count = effort.pick(6, 12);
         let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
         let edge = |k: i32| self.from * ratio.powi(k);
         let value = |k: i32| {
@@ -200,7 +201,7 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
     for map in &MAPS {
         let mut charts = Vec::new();
         for variant in of_registry() {
-            charts.push(map.chart(variant, quick)?);
+            charts.push(map.chart(variant, Effort::new(quick))?);
             progress();
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
@@ -231,9 +232,9 @@ impl Map {
         self.borders.iter().any(|(name, ..)| *name == STATICS)
     }
 
-    fn chart(&self, variant: &TriedVariant, quick: bool) -> Result<Chart> {
-        let rows = self.y.values(quick);
-        let columns = self.x.values(quick).into_par_iter();
+    fn chart(&self, variant: &TriedVariant, effort: Effort) -> Result<Chart> {
+        let rows = self.y.values(effort);
+        let columns = self.x.values(effort).into_par_iter();
         let cells = columns
             .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
             .map(|(x, y)| {

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::drawing_choice::SweepChart;
 use super::run_group::RunGroup;
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet};
-use crate::harness::Machine;
+use crate::harness::{Effort, Machine};
 
 /// The axis is logarithmic if the largest number on it is so many times the smallest.
 const LONG: f64 = 8.0;
@@ -27,7 +27,7 @@ pub(super) fn sheet(
     choice: &SweepChart,
     groups: &[RunGroup],
     machine: &Machine,
-    is_quick: bool,
+    effort: Effort,
 ) -> Sheet {
     let said = |group: &RunGroup, name: &String| match group.settings.get(name.as_str()) {
         Some(value) => format!("{name} {}", words(value)),
@@ -81,8 +81,7 @@ pub(super) fn sheet(
             choice.level.iter().map(|(name, value)| format!("{name} {value}")).collect();
         caption[0].push_str(&format!(" Dashes: {}.", all.join(", ").replace('"', "")));
     }
-    let quick = if is_quick { "Quick pass. " } else { "" };
-    caption.push(format!("{quick}{}", machine.words()));
+    caption.push(format!("{}{}", effort.note(), machine.words()));
     Sheet { size: (380 * charts.len().max(2) as u32, 480), charts, caption }
 }
 
@@ -158,7 +157,7 @@ mod tests {
         let chart = parse(chart).expect("a study").chart.expect("a chart");
         let groups = [(0.0, 10, 0.5), (0.0, 1000, 0.4), (20.0, 10, 0.3), (20.0, 1000, 0.2)];
         let groups = groups.map(|(bond, sweeps, slump)| group(bond, sweeps, slump));
-        let sheet = sheet(&chart, &groups, &Machine::this("0").expect("a machine"), false);
+        let sheet = sheet(&chart, &groups, &Machine::this("0").expect("a machine"), Effort::Full);
         assert_eq!(sheet.charts.len(), 2);
         let csv = String::from_utf8(sheet.to_csv().expect("CSV")).expect("text");
         assert!(csv.contains("\n2,max-sweeps 10,10,0.3,0.19999"), "{csv}");

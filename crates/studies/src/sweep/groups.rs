@@ -12,7 +12,7 @@ use super::plan::{SEED, Study};
 use super::results::{RunResult, RunsTable, Status};
 use super::run_group::RunGroup;
 use crate::error::{Error, Result};
-use crate::harness::{Machine, write_sheet};
+use crate::harness::{Effort, Machine, write_sheet};
 use crate::output::write_file;
 use crate::solver::worst;
 use crate::statistics::mean;
@@ -42,7 +42,7 @@ pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &st
     let machine = Machine::this(version)?;
     let groups = groups(study, table)?;
     if let Some(chart) = &study.chart {
-        let sheet = sheet(chart, &groups, &machine, study.is_quick_pass);
+        let sheet = sheet(chart, &groups, &machine, Effort::new(study.is_quick_pass));
         write_sheet(folder, CHART, &sheet, &machine.command)?;
     }
     let Machine { version, processor, cores, date, command, .. } = machine;

@@ -37,8 +37,7 @@ use self::runs::run_all;
 use self::variants::step_variants;
 use crate::config::parser_of;
 use crate::error::Result;
-use crate::harness::Machine;
-use crate::harness::write_sheet;
+use crate::harness::{Effort, Machine, write_sheet};
 use crate::output::{check_writable, print_line, print_text, remove_drafts, write_file};
 use crate::sim::Stepper;
 use crate::solver::Method;
@@ -98,6 +97,7 @@ pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
     let started = Instant::now();
     let ValidateOptions { experiments, out, quick, stepper, .. } = options;
     let ValidateOptions { methods, time_steps_secs, sweeps, tolerances, .. } = options;
+    let effort = Effort::new(*quick);
     let variants = step_variants(*stepper, methods, time_steps_secs, sweeps, tolerances)?;
     check_writable("out", out)?;
     let wanted: Vec<&'static Experiment> = EXPERIMENTS
@@ -108,13 +108,13 @@ pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
         })
         .collect();
     let machine = Machine::this(version)?;
-    let runner = machine.runner(out, *quick, "validation")?;
-    let ran = run_all(&wanted, &variants, *quick, &runner)?;
+    let runner = machine.runner(out, effort, "validation")?;
+    let ran = run_all(&wanted, &variants, effort, &runner)?;
     let sheet = report::sheet(&ran, &machine.words());
     write_sheet(out, "errors", &sheet, &machine.command)?;
     let table = report::table(&ran);
     write_file(&out.join("quantities.csv"), &table.to_csv()?)?;
-    let text = report::markdown(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
+    let text = report::markdown(&ran, effort, &machine.words(), started.elapsed().as_secs_f64());
     let path = out.join("report.md");
     write_file(&path, text.as_bytes())?;
     remove_drafts(out)?;

@@ -6,7 +6,7 @@ use super::experiment::{Agreement, PublishedQuantity};
 use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
-use crate::harness::ReportTable;
+use crate::harness::{Effort, ReportTable};
 use crate::solver::Method;
 use crate::statistics::mean;
 
@@ -34,12 +34,12 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let mut rows = Vec::new();
     for runs in all {
         for (quantity, verdict) in runs.judged() {
-            let PublishedQuantity { name, system, published, band, provenance, source, measured } =
+            let PublishedQuantity { name, system, published, band, kind, source, measured } =
                 &quantity;
             let [low, high] = *band;
             let numbers = [*published, low, high, measured.mean, measured.low, measured.high];
-            let mut row = vec![runs.experiment.name.to_owned(), runs.words(), name.clone()];
-            row.extend([system.clone(), (*source).to_owned(), provenance.words().to_owned()]);
+            let mut row = vec![runs.experiment.name.to_owned(), runs.words(), (*name).to_owned()];
+            row.extend([system.clone(), (*source).to_owned(), kind.words().to_owned()]);
             row.extend(numbers.map(|number| number.to_string()));
             row.extend([measured.count.to_string(), verdict.words().to_owned()]);
             row.extend(
@@ -61,9 +61,9 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     ReportTable { name: "quantities".into(), columns, rows }
 }
 
-pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs: f64) -> String {
+pub(super) fn markdown(all: &[ExperimentRuns], effort: Effort, machine: &str, secs: f64) -> String {
     let mut text = "# Published experiments\n\n".to_owned();
-    if quick {
+    if effort == Effort::Quick {
         text.push_str("Quick pass: smaller systems, and fewer of them, than in the full one.\n\n");
     }
     // Writing to a string cannot fail.
@@ -72,8 +72,8 @@ pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs:
         "{machine}; {secs:.0} s, runs that were there before not counted.\n\nIntervals hold the true value in 95 % \
          of samples. A quantity agrees where its whole interval lies in the published band and differs where all of \
          it lies outside; the rest is not decided. Where a number comes from: *read* in the source or a review that \
-         quotes it; *memory*: recalled and not looked up yet, so that the band is generous and tests a trend alone; \
-         *derived* from what the scene is, by approximations that are named; *exact*.\n\n![errors](errors.png)\n",
+         quotes it; *recalled* and not looked up, so that it gets no verdict; *derived* from the scene, by approximations that are \
+         named; *exact*.\n\n![errors](errors.png)\n",
     );
     text.push_str(&summary(all));
     let mut last = "";
@@ -93,11 +93,12 @@ fn summary(all: &[ExperimentRuns]) -> String {
         all.iter().flat_map(ExperimentRuns::judged).map(|(_, verdict)| verdict).collect();
     let count = |verdict| verdicts.iter().filter(|&&one| one == verdict).count();
     format!(
-        "\nOf {} quantities {} agree, {} differ and {} are not decided.\n",
+        "\nOf {} quantities {} agree, {} differ and {} are not decided; {} were recalled and have no verdict.\n",
         verdicts.len(),
         count(Agreement::Agrees),
         count(Agreement::Differs),
-        count(Agreement::NotDecided)
+        count(Agreement::NotDecided),
+        count(Agreement::NoVerdict)
     )
 }
 
@@ -123,14 +124,13 @@ fn of_variant(runs: &ExperimentRuns) -> String {
          |---|---|---|---|---|---|---|---|\n",
     );
     for (quantity, verdict) in runs.judged() {
-        let PublishedQuantity { name, system, published, band, provenance, source, measured } =
-            &quantity;
+        let PublishedQuantity { name, system, published, band, kind, source, measured } = &quantity;
         let _ = writeln!(
             text,
             "| {name} | {system} | {} | {} | {}: {source} | {} | {} | **{}** |",
             short(*published),
             ends(band[0], band[1]),
-            provenance.words(),
+            kind.words(),
             short(measured.mean),
             ends(measured.low, measured.high),
             verdict.words()

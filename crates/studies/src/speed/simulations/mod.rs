@@ -17,7 +17,7 @@ use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, pareto_front, points};
 use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
-use crate::harness::{Case, Runner, Threads};
+use crate::harness::{Case, Effort, Runner, Threads};
 use crate::number;
 use crate::output::Progress;
 use crate::scene::{NewPile, Scene};
@@ -49,7 +49,7 @@ const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
 
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let plan = &SimulationPlan::new(bench.options.quick);
+    let plan = &SimulationPlan::new(bench.effort());
     let configs: Vec<_> =
         (0..plan.piles.len()).map(|pile| plan.config(pile, FINEST_SECS, FLOOR_LAW)).collect();
     let states = States::of(bench.states_folder(), configs.iter())?;
@@ -92,18 +92,17 @@ struct SimulationPlan {
 
 impl SimulationPlan {
     /// What the law range costs is told by one good method, and by long runs.
-    fn new(quick: bool) -> Self {
-        let laws: &[Stepper] =
-            if quick { &[Stepper::Moreau] } else { &[Stepper::Moreau, Stepper::Range] };
-        let (variants, budgeted) = budgeted(laws, quick);
+    fn new(effort: Effort) -> Self {
+        let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
+        let (variants, budgeted) = budgeted(laws, effort);
         Self {
-            time_steps_secs: if quick { vec![1e-3, 5e-3] } else { vec![1e-3, 2e-3, 5e-3] },
-            piles: piles(quick),
+            time_steps_secs: effort.pick(vec![1e-3, 5e-3], vec![1e-3, 2e-3, 5e-3]),
+            piles: piles(effort),
             variants,
             budgeted,
             laws: laws.to_vec(),
-            repeats: if quick { 1 } else { 2 },
-            limit_secs: if quick { 2.0 } else { 10.0 },
+            repeats: effort.pick(1, 2),
+            limit_secs: effort.pick(2.0, 10.0),
         }
     }
 
@@ -127,11 +126,10 @@ impl SimulationPlan {
     }
 }
 
-fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<BudgetedVariant>) {
-    let residuals: &[f64] =
-        if quick { &[1e-2, 1e-4, 1e-6] } else { &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8] };
-    let sweeps: &[u32] = if quick { &[20] } else { &[10, 40] };
-    let all_substeps: &[u32] = if quick { &[0] } else { &[0, 16, 64] };
+fn budgeted(laws: &[Stepper], effort: Effort) -> (Vec<ChartedVariant>, Vec<BudgetedVariant>) {
+    let residuals: &[f64] = effort.pick(&[1e-2, 1e-4, 1e-6], &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8]);
+    let sweeps: &[u32] = effort.pick(&[20], &[10, 40]);
+    let all_substeps: &[u32] = effort.pick(&[0], &[0, 16, 64]);
     let (mut variants, mut budgeted) = (Vec::new(), Vec::new());
     let of_law = |law| variants::all().into_iter().map(move |variant| (law, variant));
     let models = variants::models().into_iter().map(|model| (Stepper::Moreau, model));
@@ -173,9 +171,9 @@ fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<Budgeted
 
 /// (Bond, seed) of each pile of 138 grains. Bond numbers are dealt out to the seeds: each is met by several, and each
 /// meets several.
-fn piles(quick: bool) -> Vec<(f64, u64)> {
+fn piles(effort: Effort) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
-    if quick {
+    if effort == Effort::Quick {
         return vec![(0.0, shared), (20.0, 1), (50.0, 2), (100.0, 3)];
     }
     let bonds = [[0.0, 50.0], [20.0, 100.0]];
