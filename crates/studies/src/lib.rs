@@ -5,7 +5,7 @@
 // They panic where a stream is closed or full: `output` has lines that do not.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
-use slump_core::{contact, error, number, scene, sim, solver, world};
+use slump_core::{contact, error, number, scene, setting, sim, solver, world};
 use slump_data::{column_spec, config, data, granular, input, output};
 
 mod budget;

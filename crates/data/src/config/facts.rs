@@ -35,9 +35,8 @@ pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
     Ok(RunFacts { facts })
 }
 
-/// The same of a run that began with the scene's settings, and went on with others after some steps: the
-/// number of each step, its simulated time in seconds, and all settings from there on. What was not
-/// changed is not told.
+/// The facts of a scene, and the changes of its settings during the run: the number of each step, its simulated time in
+/// seconds, and all settings from then on. Settings that stay the same are left out.
 ///
 /// # Errors
 /// As [`scene_facts`].

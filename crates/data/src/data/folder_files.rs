@@ -13,8 +13,8 @@ const BEGINNING_OF_PART: &str = "part-";
 /// … and ends with.
 const ENDING_OF_PART: &str = ".parquet";
 
-/// The plain files of a folder whose names are a recording's, sorted, with what a kill left of such; none
-/// where there is no folder. Links and pipes are nobody's leftovers.
+/// The plain files of a folder whose names are a recording's, sorted, with the drafts of such files that kills have
+/// left; none if there is no folder. Links and pipes are left out.
 pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
     let refuse = |error| Error::file(folder, error);
     let entries = match std::fs::read_dir(folder) {
@@ -39,7 +39,7 @@ pub(super) fn remove(path: &Path) -> Result<()> {
     std::fs::remove_file(path).map_err(|error| Error::file(path, error))
 }
 
-/// Makes a folder where it is not there.
+/// Makes a folder if it is missing.
 pub(super) fn make_folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path)
         .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))

@@ -11,14 +11,14 @@ use super::vtk::{self, Vtk};
 use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 
-/// What is written where nothing is said.
+/// The format that is written if none is asked for.
 pub const DEFAULT_FORMAT: FormatName =
     if cfg!(feature = "data") { FormatName::Parquet } else { FormatName::Csv };
 
 /// The formats that are asked for, each once.
 ///
 /// # Errors
-/// Where this build cannot write one of them.
+/// If this build cannot write one of them.
 pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
     if settings.formats.is_empty() {
         return Ok(vec![DEFAULT_FORMAT]);
@@ -27,10 +27,10 @@ pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
     formats.map(|format| check_format(format).map(|()| format)).collect()
 }
 
-/// Fails where this build cannot write it.
+/// Fails if this build cannot write a format.
 ///
 /// # Errors
-/// Says what is missing.
+/// Names the missing feature.
 pub fn check_format(format: FormatName) -> Result<()> {
     if cfg!(feature = "data") || format != FormatName::Parquet {
         return Ok(());

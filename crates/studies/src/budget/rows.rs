@@ -10,11 +10,11 @@ pub(crate) struct CauseRow {
     /// Whose share it is.
     pub share: Share,
     pub cause: &'static str,
-    /// What is changed to what.
+    /// The change.
     pub changed: String,
     /// Starts that both came to a number from.
     pub starts: usize,
-    /// What it adds to the value, and its interval; none where it was not run, or came to nothing.
+    /// The effect on the value, and its interval; none if it was not run, or if a run failed.
     pub adds: Option<[f64; 3]>,
     /// Part of its steps that were not solved as asked.
     pub unsolved: f64,
@@ -30,7 +30,7 @@ pub(crate) struct CauseRow {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Trust {
-    /// Neither the method nor the choice of a law moves it by more than what was asked for.
+    /// Neither the method nor the choice of a law moves it by more than the user allows.
     Yes,
     /// The method does not; the choice of a law does, or that is not known yet.
     Mostly,
@@ -41,7 +41,7 @@ pub enum Trust {
 }
 
 impl Trust {
-    /// The verdict as it is told.
+    /// The words of the verdict.
     pub fn words(self) -> &'static str {
         match self {
             Self::Yes => "yes",
@@ -61,15 +61,15 @@ pub(crate) struct QuantityBudget {
     pub within: f64,
     /// Starts of the scene as it is.
     pub starts: usize,
-    /// Mean over starts, and its interval; none where runs came to nothing.
+    /// Mean over initial states, and its interval; none if a run failed.
     pub value: Option<[f64; 3]>,
     /// Standard deviation between starts.
     pub spread: Option<f64>,
-    /// Of the scene that was asked for, where it is none of the starts.
+    /// The value of the scene that the user asked for, if it is not one of the initial states.
     pub itself: Option<f64>,
-    /// What Δt → 0 adds, where that can be told.
+    /// The effect of Δt → 0, if it is known.
     pub limit_adds: Option<[f64; 3]>,
-    /// Time of Δt, Δt/2 and Δt/4 by that of Δt, and what each adds beside Δt/8.
+    /// Time of Δt, Δt/2 and Δt/4 over that of Δt, and the effect of each against Δt/8.
     pub left_by_time_step: Vec<(f64, [f64; 3])>,
     pub trust: Trust,
     pub answer: String,
@@ -79,7 +79,7 @@ pub(crate) struct QuantityBudget {
 /// All that a budget is made of, but its runs.
 pub(super) struct Design<'a> {
     pub variants: &'a [Variant],
-    /// True where starts are piles of other seeds; else grains are moved by next to nothing.
+    /// True if initial states are piles of other seeds; else grains are moved by 1e-9 d.
     pub has_seeds: bool,
     pub time_step_secs: f64,
 }

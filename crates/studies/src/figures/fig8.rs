@@ -83,8 +83,7 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
         "nothing is drawn at random: a run a choice and time step; fig8-share has many starts",
     )
     .hanging_on("the choices that were tried, one at a time");
-    let name = "cradle-choices-outcomes".to_owned();
-    let table = ReportTable { name, columns: vec!["choice", "of_14_outcomes"], rows: agreed };
+    let table = ReportTable::new("cradle-choices-outcomes", "choice of_14_outcomes", agreed);
     let claims = vec![pattern_comes_out(&all[0].1), shock_opens(&rows), claim];
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }

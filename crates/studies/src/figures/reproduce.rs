@@ -8,8 +8,8 @@ use super::studies::FinishedStudy;
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
 
-use crate::harness::{Effort, Machine, write_sheet};
-use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
+use crate::harness::{Bench, Effort};
+use crate::output::{note_line, print_line, print_text};
 use crate::solver::worst;
 
 /// The pictures of grains, which are drawn together.
@@ -41,8 +41,8 @@ pub fn reproduce(
         return Err(Error::value("figure", unknown, format!("one of {}", known.join(", "))));
     }
     let wanted = |name: &str| names.iter().any(|asked| asked == name || asked == ALL);
-    check_writable("out", folder)?;
     let effort = Effort::new(quick);
+    let bench = Bench::new(folder, effort, version)?;
     let mut studies = StudyRunner::new(folder.join("studies"), effort);
     let mut report = opening(effort);
     for info in FIGURES.iter().filter(|figure| wanted(figure.name)) {
@@ -54,10 +54,7 @@ pub fn reproduce(
         studies.qualify(info.studies, &mut figure.claims);
         figure.sheet.caption.extend(studies.note(info.studies));
         let command = format!("slump reproduce {} --out figures{}", info.name, effort.option());
-        write_sheet(folder, figure.name, &figure.sheet, &command)?;
-        if let Some(table) = &figure.table {
-            write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
-        }
+        bench.write((figure.name, &figure.sheet), &figure.table, &command)?;
         note_line(format_args!("{}: {:.0} s", info.name, begun.elapsed().as_secs_f64()));
         report.push_str(&section(info, &figure));
     }
@@ -71,13 +68,9 @@ pub fn reproduce(
         report,
         "\nMade in {:.0} s, studies that were there before not counted: {}.",
         started.elapsed().as_secs_f64(),
-        Machine::this(version)?.words()
+        bench.machine.words()
     );
-    let path = folder.join("report.md");
-    write_file(&path, report.as_bytes())?;
-    remove_drafts(folder)?;
-    print_line(path.display());
-    Ok(())
+    bench.finish("report.md", &report)
 }
 
 fn opening(effort: Effort) -> String {

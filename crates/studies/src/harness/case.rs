@@ -11,7 +11,7 @@ pub(crate) struct Case<C> {
     pub setup: C,
 }
 
-/// A line of a journal: a case and its result, whose fields stand beside the others.
+/// A line of a journal: a case and the fields of its result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct FinishedCase<T> {
     pub key: String,

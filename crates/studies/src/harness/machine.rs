@@ -1,17 +1,12 @@
-//! What a time was measured on, when, and with which command; and the runner of what is measured there.
+//! The processor, the day and the command of a measurement.
 
-use std::path::Path;
 use std::time::SystemTime;
 
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
-use super::effort::Effort;
-use super::runner::Runner;
 use crate::error::{Error, Result};
-use crate::output::check_writable;
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct Machine {
     /// The program's version and commit.
     pub version: String,
@@ -21,6 +16,7 @@ pub(crate) struct Machine {
     pub date: String,
     pub command: String,
     /// Tells programs and processors apart: times of another one are no times of this one.
+    #[serde(skip)]
     pub fingerprint: String,
 }
 
@@ -43,19 +39,6 @@ impl Machine {
             command: format!("slump {arguments}"),
             fingerprint: hasher.finalize().to_hex()[..12].to_owned(),
         })
-    }
-
-    /// A runner of the measurements of this program on this machine, whose journal lies below `folder`. A quick pass
-    /// has its own.
-    pub(crate) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
-        &self,
-        folder: &Path,
-        effort: Effort,
-        name: &str,
-    ) -> Result<Runner<T>> {
-        let folder = folder.join("measured").join(&self.fingerprint).join(effort.name());
-        check_writable("out", &folder)?;
-        Runner::open(name, &folder, name)
     }
 
     pub(crate) fn words(&self) -> String {

@@ -1,4 +1,4 @@
-//! Numbers that runs were told apart by, and numbers that were measured of each.
+//! Numbers by which runs differ, and numbers that were measured of each run.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,7 @@ pub(crate) struct RunReadings {
 }
 
 impl RunReadings {
-    /// A number that was measured; NaN where there is none of that name.
+    /// A number that was measured; NaN if there is none of that name.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         let mut readings = self.readings.iter();
         readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
@@ -44,12 +44,12 @@ pub(crate) struct MeasuredCase {
 }
 
 impl MeasuredCase {
-    /// A number that tells the case from others; NaN where there is none of that name.
+    /// A number by which the case differs from others; NaN if there is none of that name.
     pub(crate) fn at(&self, name: &str) -> f64 {
         self.at.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
     }
 
-    /// A number that was measured; NaN where there is none of that name.
+    /// A number that was measured; NaN if there is none of that name.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.run.reading(name)
     }
@@ -72,7 +72,7 @@ impl<'a> Measurements<'a> {
         self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
     }
 
-    /// A number of the first case; 0 where there is no case.
+    /// A number of the first case; 0 if there is no case.
     pub(crate) fn first(&self, name: &str) -> f64 {
         self.0.first().map_or(0.0, |case| case.at(name))
     }
@@ -93,7 +93,7 @@ impl<'a> Measurements<'a> {
         self.0.iter().map(|case| case.reading(name)).collect()
     }
 
-    /// A reading of the first case; NaN where there is no case.
+    /// A reading of the first case; NaN if there is no case.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.0.first().map_or(f64::NAN, |case| case.reading(name))
     }

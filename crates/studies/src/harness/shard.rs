@@ -18,7 +18,7 @@ impl Shard {
         run % self.count == self.index - 1
     }
 
-    /// The name of its journal, where that of the whole is `of`.
+    /// The name of its journal, if `of` is the name of the whole journal.
     pub(crate) fn journal(self, of: &str) -> String {
         format!("{of}-{}-of-{}", self.index, self.count)
     }

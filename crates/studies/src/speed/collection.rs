@@ -4,10 +4,12 @@
 use std::path::Path;
 
 use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::config::{Config, SceneSource};
 use crate::error::Result;
-use crate::harness::Effort;
+use crate::harness::{Bench, Case, Effort, Runner, Threads};
 use crate::output::Progress;
 use crate::scene::{Deposition, NewPile, walls};
 use crate::sim::Simulation;
@@ -181,6 +183,23 @@ pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
         .collect();
     progress.finish();
     Ok(piles?.into_iter().flatten().collect())
+}
+
+/// The result of each step of a plan: computed, or from the journal of that name.
+pub(super) fn over_steps<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
+    bench: &Bench,
+    journal: &str,
+    plan: &CollectionPlan,
+    threads: Threads,
+    compute: impl Fn(&Simulation) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    let runner: Runner<T> = bench.runner(journal)?;
+    let case = |(setup, key)| Case { key, cost: 1.0, setup };
+    let cases: Vec<Case<usize>> = plan.names().into_iter().enumerate().map(case).collect();
+    let is_finished = cases.iter().all(|case| runner.has(&case.key));
+    let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
+    let results = runner.run(&cases, threads, |&step| compute(&steps[step]))?;
+    Ok(results.into_iter().map(|case| case.result).collect())
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! How many solutions the steps of piles have under Coulomb's law, and how far apart they are.
 
-use super::collection::{CollectionPlan, collect};
+use super::collection::{CollectionPlan, over_steps};
 use super::solves::{ReferenceSearch, References};
 use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::Result;
-use crate::harness::{Case, Effort, ReportTable, Runner, Threads};
+use crate::harness::{Effort, ReportTable, Threads};
 use crate::solver::SolutionSearch;
 
 const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
@@ -68,12 +68,14 @@ fn search(effort: Effort) -> SolutionSearch {
 
 /// Searches all steps, some at a time, and draws how far apart the solutions are.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let search = search(bench.effort());
+    let search = search(bench.effort);
     let mut all = Vec::new();
     let (columns, mut rows) =
         ("piles steps with_several median_distance largest_distance", Vec::new());
-    for SolutionPlan { name, friction, plan } in plans(bench.effort()) {
-        let found = searched(bench, &plan, search)?;
+    for SolutionPlan { name, friction, plan } in plans(bench.effort) {
+        let found: Vec<References> = over_steps(bench, "solutions", &plan, Threads::All, |step| {
+            Ok(step.next_problem(ReferenceSearch(search)))
+        })?;
         let several = found.iter().filter(|it| it.found > 1);
         let mut distances: Vec<f64> = several.map(|it| it.spread).collect();
         distances.sort_by(f64::total_cmp);
@@ -101,8 +103,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
             }
         }
     }
-    let columns = columns.split(' ').collect();
-    let summary = ReportTable { name: "chart-solutions-piles".into(), columns, rows };
+    let summary = ReportTable::new("chart-solutions-piles", columns, rows);
     let words = format!(
         "{} starts a step: the impulses of the step before, none, and random ones that the law allows, each solved with up to {} \
          sweeps of conjugate gradients and then by Newton's method to a residual of {:e}. Two results are two solutions \
@@ -110,24 +111,8 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
          √(g d).",
         search.starts, search.max_sweeps, search.tolerance
     );
-    let (name, others) = ("chart-solutions".to_owned(), vec![steps(&all)]);
-    Ok(vec![ChartSection { name, sheet: sheet(bench, &all), words, summary, others }])
-}
-
-fn searched(
-    bench: &Bench,
-    plan: &CollectionPlan,
-    search: SolutionSearch,
-) -> Result<Vec<References>> {
-    let runner: Runner<References> = bench.runner("solutions")?;
-    let names = plan.names();
-    let case = |(setup, key): (usize, &String)| Case { key: key.clone(), cost: 1.0, setup };
-    let cases: Vec<Case<usize>> = names.iter().enumerate().map(case).collect();
-    let is_finished = cases.iter().all(|case| runner.has(&case.key));
-    let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
-    let results = runner
-        .run(&cases, Threads::All, |&step| Ok(steps[step].next_problem(ReferenceSearch(search))))?;
-    Ok(results.into_iter().map(|case| case.result).collect())
+    let (name, tables) = ("chart-solutions".to_owned(), vec![summary, steps(&all)]);
+    Ok(vec![ChartSection { name, sheet: sheet(bench, &all), words, tables }])
 }
 
 fn sheet(bench: &Bench, all: &[SearchedStep]) -> Sheet {
@@ -178,6 +163,5 @@ fn steps(all: &[SearchedStep]) -> ReportTable {
             format!("{residual:e}"),
         ]
     };
-    let name = "chart-solutions-steps".to_owned();
-    ReportTable { name, columns: columns.split(' ').collect(), rows: all.iter().map(row).collect() }
+    ReportTable::new("chart-solutions-steps", columns, all.iter().map(row))
 }

@@ -6,9 +6,9 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::performance::Timing;
-use super::variants::ChartedVariant;
 use crate::contact::ContactList;
 use crate::error::Result;
+use crate::harness::Change;
 use crate::number;
 use crate::sim::{ProblemVisitor, Simulation};
 use crate::solver::{
@@ -112,7 +112,7 @@ impl TimedSolves {
 /// Times the solves of one step, each from the same start, until one ends by itself or takes too long. Copies of the
 /// problem are made outside of the clock.
 pub(super) struct SolveTimer<'a> {
-    pub variant: &'a ChartedVariant,
+    pub variant: &'a Change,
     pub references: &'a References,
     /// A solve that takes longer is the last one, s.
     pub limit_secs: f64,
@@ -203,7 +203,7 @@ mod tests {
 
     fn time(
         step: &Simulation,
-        variant: &ChartedVariant,
+        variant: &Change,
         references: &References,
         limit_secs: f64,
     ) -> TimedSolves {
@@ -233,7 +233,7 @@ mod tests {
         let step = &collected(138, false)[0];
         let references = &step.next_problem(ReferenceSearch(SEARCH));
         assert!(references.found > 0 && references.residual < 1e-8, "{references:?}");
-        let last = |variant: &ChartedVariant| {
+        let last = |variant: &Change| {
             let solves = time(step, variant, references, 0.2);
             (solves.0[0].error, solves.0.last().expect("a solve").error)
         };

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::drawing_choice::SweepChart;
 use super::run_group::RunGroup;
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet};
-use crate::harness::{Effort, Machine};
+use crate::harness::{Effort, Machine, distinct};
 
 /// The axis is logarithmic if the largest number on it is so many times the smallest.
 const LONG: f64 = 8.0;
@@ -98,16 +98,6 @@ fn words(value: &Value) -> String {
     }
 }
 
-fn distinct(all: impl Iterator<Item = String>) -> Vec<String> {
-    let mut kept: Vec<String> = Vec::new();
-    for one in all {
-        if !kept.contains(&one) {
-            kept.push(one);
-        }
-    }
-    kept
-}
-
 fn axis(name: &str, numbers: impl Iterator<Item = f64> + Clone) -> Axis {
     let [low, high] =
         [f64::min, f64::max].map(|best| numbers.clone().reduce(best).unwrap_or(f64::NAN));
@@ -122,12 +112,8 @@ fn axis(name: &str, numbers: impl Iterator<Item = f64> + Clone) -> Axis {
         let middle = if low.is_finite() { low } else { 0.0 };
         Axis::linear(name, middle - 1.0, middle + 1.0)
     };
-    let mut ticks: Vec<(f64, String)> = Vec::new();
-    for number in numbers {
-        if ticks.iter().all(|(other, _)| *other != number) {
-            ticks.push((number, words(&Value::from(number))));
-        }
-    }
+    let tick = |number| (number, words(&Value::from(number)));
+    let ticks: Vec<(f64, String)> = distinct(numbers).into_iter().map(tick).collect();
     // Of more than that, round numbers say as much.
     if ticks.len() > MOST_TICKS { axis } else { Axis { ticks, ..axis } }
 }

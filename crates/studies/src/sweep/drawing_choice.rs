@@ -15,7 +15,7 @@ pub struct SweepChart {
     /// A panel for each combination of their values.
     #[serde(default)]
     pub panels: Vec<String>,
-    /// Runs that have this value of a setting are level lines: what others are held against.
+    /// Runs that have this value of a setting are level lines, against which the reader compares the others.
     #[serde(default)]
     pub level: toml::Table,
 }

@@ -23,11 +23,8 @@ const CHART: &str = "chart";
 #[derive(Serialize)]
 struct SweepReport<'a> {
     program: &'static str,
-    version: String,
-    processor: String,
-    cores: usize,
-    date: String,
-    command: String,
+    #[serde(flatten)]
+    machine: &'a Machine,
     study: &'a str,
     runs: usize,
     core_secs: f64,
@@ -45,14 +42,9 @@ pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &st
         let sheet = sheet(chart, &groups, &machine, Effort::new(study.is_quick_pass));
         write_sheet(folder, CHART, &sheet, &machine.command)?;
     }
-    let Machine { version, processor, cores, date, command, .. } = machine;
     let report = SweepReport {
         program: "slump",
-        version,
-        processor,
-        cores,
-        date,
-        command,
+        machine: &machine,
         study: &study.name,
         runs: table.rows.len(),
         core_secs: table.wall_secs.iter().sum(),

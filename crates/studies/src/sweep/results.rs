@@ -81,7 +81,7 @@ impl RunResult {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
     pub outcome: RunResult,
-    /// Checksum of the file with its series, where it has one.
+    /// Checksum of the file with its series, if it has one.
     #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
 }

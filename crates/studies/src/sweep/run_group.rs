@@ -14,14 +14,15 @@ pub(super) struct RunGroup {
     pub starts: usize,
     /// Those that did not.
     pub spoilt: usize,
-    /// Mean slump, and half its 95 % interval; `null` where no start has one, and where one start proves nothing.
+    /// Mean slump, and half its 95 % interval; `null` if no start has a slump, and with one start.
     pub slump: [f64; 2],
     /// The same of this slump less that under the first value of a list, all else alike, over the starts of both. By the
     /// first name of the list.
     pub less_first: BTreeMap<String, [f64; 2]>,
     /// Share of the steps that were not solved as asked.
     pub unsolved: f64,
-    /// The largest bound that a step had on the velocities' error, m/s; `null` where a state was no longer finite.
+    /// The largest bound that a step had on the velocities' error, m/s;
+    /// `null` if a state was no longer finite.
     pub largest_velocity_error: f64,
     /// The largest of the runs' mean overlaps, d.
     pub mean_overlap: f64,

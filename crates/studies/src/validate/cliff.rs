@@ -73,10 +73,12 @@ fn standing_from(of_seed: &Measurements) -> f64 {
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    rank correlation of run-out and Bond                           | -1 -1 -0.7   | recalled: Abramian et al. 2020, Gans et al. 2023: it falls
-    rank correlation of roughness and Bond, of those that fall     | 0.5 1 1      | read: Abramian et al. 2021: it grows with cohesion
-    exponent of roughness in length, the most cohesive that fall   | 0.4 0.67 0.9 | recalled: crack paths in the plane: 2/3
-    height of the least cohesive cliff that stands, over the bound | 0.2 1 1      | recalled: Mohr, Coulomb: at most 1
+    rank correlation of run-out and Bond | -1 -1 -0.7 | recalled: Abramian et al. 2020, Gans et al. 2023: it falls
+    rank correlation of roughness and Bond, of those that fall | 0.5 1 1 \
+        | read: Abramian et al. 2021: it grows with cohesion
+    exponent of roughness in length, the most cohesive that fall | 0.4 0.67 0.9 \
+        | recalled: crack paths in the plane: 2/3
+    height of the least cohesive cliff that stands, over the bound | 0.2 1 1 | recalled: Mohr, Coulomb: at most 1
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

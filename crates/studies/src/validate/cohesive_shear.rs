@@ -56,14 +56,18 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    T/N at η = 1 over that without cohesion                  | 0.85 1 1.2      | recalled: Rognon et al. 2006: weak cohesion leaves it
-    φ at η = 1 less that without cohesion                    | -0.04 -0.01 0   | recalled: Rognon et al. 2006: weak cohesion dilates
-    T/N at η = 30 over that without cohesion                 | 1.2 2 inf       | recalled: Rognon et al. 2006: strong cohesion raises it
-    φ at η = 30 less that without cohesion                   | -inf -0.1 -0.02 | recalled: Rognon et al. 2006: strong cohesion dilates further
-    T of the plates: their difference over their sum         | -0.05 0 0.05    | exact: a steady flow gains no momentum
-    rank correlation of T/N and the energy of a bond, η = 3  | 0.5 1 1         | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
-    rank correlation of T/N and the energy of a bond, η = 10 | 0.5 1 1         | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
-    T/N at η = 10 over that at η = 3, same energies          | 1.02 1.3 inf    | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
+    T/N at η = 1 over that without cohesion | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it
+    φ at η = 1 less that without cohesion | -0.04 -0.01 0 | recalled: Rognon et al. 2006: weak cohesion dilates
+    T/N at η = 30 over that without cohesion | 1.2 2 inf | recalled: Rognon et al. 2006: strong cohesion raises it
+    φ at η = 30 less that without cohesion | -inf -0.1 -0.02 \
+        | recalled: Rognon et al. 2006: strong cohesion dilates further
+    T of the plates: their difference over their sum | -0.05 0 0.05 | exact: a steady flow gains no momentum
+    rank correlation of T/N and the energy of a bond, η = 3 | 0.5 1 1 \
+        | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
+    rank correlation of T/N and the energy of a bond, η = 10 | 0.5 1 1 \
+        | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
+    T/N at η = 10 over that at η = 3, same energies | 1.02 1.3 inf \
+        | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
 ";
 
 fn judge(measured: &Measurements) -> Vec<Measured> {

@@ -151,13 +151,14 @@ fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    run-out over a, a ≤ 2, simulated       | 1.9 2.5 3.1   | recalled: Staron, Hinch 2005: 2.5
-    run-out over a, a ≤ 2, in a channel    | 0.9 1.2 1.5   | recalled: Lube et al. 2005: 1.2
-    exponent of run-out in a, a ≥ 2        | 0.55 0.7 0.9  | recalled: Staron, Hinch 2005: 0.7; Lajeunesse et al. 2005: 2/3
-    factor of run-out, a ≥ 2, simulated    | 2.4 3.25 4.1  | recalled: Staron, Hinch 2005: 3.25
-    factor of run-out, a ≥ 2, in a channel | 1.4 1.9 2.4   | recalled: Lube et al. 2005: 1.9
-    exponent of final height in a, a ≥ 1   | 0.25 0.35 0.5 | recalled: Staron, Hinch 2005: 0.35; Lajeunesse et al. 2005: 1/3
-    factor of final height, a ≥ 1          | 0.5 0.65 0.8  | recalled: Staron, Hinch 2005: 0.65
+    run-out over a, a ≤ 2, simulated | 1.9 2.5 3.1 | recalled: Staron, Hinch 2005: 2.5
+    run-out over a, a ≤ 2, in a channel | 0.9 1.2 1.5 | recalled: Lube et al. 2005: 1.2
+    exponent of run-out in a, a ≥ 2 | 0.55 0.7 0.9 | recalled: Staron, Hinch 2005: 0.7; Lajeunesse et al. 2005: 2/3
+    factor of run-out, a ≥ 2, simulated | 2.4 3.25 4.1 | recalled: Staron, Hinch 2005: 3.25
+    factor of run-out, a ≥ 2, in a channel | 1.4 1.9 2.4 | recalled: Lube et al. 2005: 1.9
+    exponent of final height in a, a ≥ 1 | 0.25 0.35 0.5 \
+        | recalled: Staron, Hinch 2005: 0.35; Lajeunesse et al. 2005: 1/3
+    factor of final height, a ≥ 1 | 0.5 0.65 0.8 | recalled: Staron, Hinch 2005: 0.65
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

@@ -134,7 +134,7 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
     exponent p of T = T₀ (1 + t/τ)^−p | 1.85 2 2.15 | exact: Haff 1983
-    τ over that of kinetic theory     | 0.9 1 1.1   | recalled: Enskog's collision rate, Henderson 1975, walls included
+    τ over that of kinetic theory | 0.9 1 1.1 | recalled: Enskog's collision rate, Henderson 1975, walls included
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

@@ -133,13 +133,13 @@ fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    q of jacobi, from the period            | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
-    q of jacobi, from the damping           | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
-    q of nsgs interleaved, from the period  | 0.98 1 1.02      | derived: D. M. Young 1971: any fixed order on a chain
-    q of nsgs interleaved, from the damping | 0.98 1 1.02      | derived: D. M. Young 1971: any fixed order on a chain
-    q of nsgs bottom-up, from the period    | 0.98 1 1.02      | derived: D. M. Young 1971: any fixed order on a chain
-    q of nsgs bottom-up, from the damping   | 0.98 1 1.02      | derived: D. M. Young 1971: any fixed order on a chain
-    exponent of the period in N             | -0.51 -0.5 -0.49 | read: Unger et al. 2002: T ∝ 1/√N
+    q of jacobi, from the period | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
+    q of jacobi, from the damping | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
+    q of nsgs interleaved, from the period | 0.98 1 1.02 | derived: D. M. Young 1971: any fixed order on a chain
+    q of nsgs interleaved, from the damping | 0.98 1 1.02 | derived: D. M. Young 1971: any fixed order on a chain
+    q of nsgs bottom-up, from the period | 0.98 1 1.02 | derived: D. M. Young 1971: any fixed order on a chain
+    q of nsgs bottom-up, from the damping | 0.98 1 1.02 | derived: D. M. Young 1971: any fixed order on a chain
+    exponent of the period in N | -0.51 -0.5 -0.49 | read: Unger et al. 2002: T ∝ 1/√N
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

@@ -115,9 +115,10 @@ fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    K of Janssen's λ = W/(2 μ_w K)                           | 0.35 0.7 1.1 | recalled: Janssen 1895; K of 0.4 … 1 for grains
-    deviation of the share from Janssen's law, r.m.s.        | 0 0.03 0.1   | recalled: Janssen 1895
-    load of a filling 5 W high over that of one half as high | 0.8 1.1 1.5  | recalled: Janssen 1895 with K = 0.7: 1.1; without friction 2
+    K of Janssen's λ = W/(2 μ_w K) | 0.35 0.7 1.1 | recalled: Janssen 1895; K of 0.4 … 1 for grains
+    deviation of the share from Janssen's law, r.m.s. | 0 0.03 0.1 | recalled: Janssen 1895
+    load of a filling 5 W high over that of one half as high | 0.8 1.1 1.5 \
+        | recalled: Janssen 1895 with K = 0.7: 1.1; without friction 2
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

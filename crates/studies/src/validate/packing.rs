@@ -117,10 +117,10 @@ fn tail(bearing: &[&ContactState]) -> f64 {
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
     φ without friction | 0.82 0.84 0.86 | read: reported for nearly monodisperse discs
-    Z without friction | 3.9 4 4.1      | read: 2D = 4: isostatic
-    Z at μ = 10        | 2.95 3.1 3.4   | recalled: → 3 as μ → ∞
-    β without friction | 1.2 1.6 2      | recalled: 1.4 (Radjai et al. 1996) … 1.8 (experiment)
-    β at μ = 10        | 1.2 1.6 2      | recalled: 1.4 (Radjai et al. 1996) … 1.8 (experiment)
+    Z without friction | 3.9 4 4.1 | read: 2D = 4: isostatic
+    Z at μ = 10 | 2.95 3.1 3.4 | recalled: → 3 as μ → ∞
+    β without friction | 1.2 1.6 2 | recalled: 1.4 (Radjai et al. 1996) … 1.8 (experiment)
+    β at μ = 10 | 1.2 1.6 2 | recalled: 1.4 (Radjai et al. 1996) … 1.8 (experiment)
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

@@ -6,8 +6,7 @@ use super::experiment::{Agreement, PublishedQuantity};
 use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
-use crate::harness::{Effort, ReportTable};
-use crate::solver::Method;
+use crate::harness::{Effort, ReportTable, distinct};
 use crate::statistics::mean;
 
 const LEAST_ERROR: f64 = 1e-3;
@@ -57,8 +56,7 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let columns = "experiment way quantity system source provenance published published_low published_high measured \
                    measured_low measured_high samples verdict error simulated_secs_per_sec wall_secs \
                    share_of_unsolved_steps";
-    let columns = columns.split(' ').collect();
-    ReportTable { name: "quantities".into(), columns, rows }
+    ReportTable::new("quantities", columns, rows)
 }
 
 pub(super) fn markdown(all: &[ExperimentRuns], effort: Effort, machine: &str, secs: f64) -> String {
@@ -141,16 +139,8 @@ fn of_variant(runs: &ExperimentRuns) -> String {
 
 /// Draws a point for each experiment and variant: how far off its quantities are, and how fast it was.
 pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
-    let mut variants: Vec<StepVariant> = all.iter().filter_map(|runs| runs.variant).collect();
-    let mut seen = Vec::new();
-    variants.retain(|variant| {
-        !seen.contains(variant) && {
-            seen.push(*variant);
-            true
-        }
-    });
-    let mut names: Vec<&str> = all.iter().map(|runs| runs.experiment.name).collect();
-    names.dedup();
+    let variants = distinct(all.iter().filter_map(|runs| runs.variant));
+    let names = distinct(all.iter().map(|runs| runs.experiment.name));
     let count = names.len() as f64;
     let numbers = |number: fn(&ExperimentRuns) -> f64| {
         let numbers = all.iter().map(number).filter(|number| number.is_finite());
@@ -204,12 +194,7 @@ fn error(runs: &ExperimentRuns) -> f64 {
 
 /// A colour a method and time step; discs for sweeps and rings for residuals, the larger the more work.
 fn look_of(variant: &StepVariant, variants: &[StepVariant]) -> (String, Rgb, Look) {
-    let mut kinds: Vec<(Method, f64)> = Vec::new();
-    for one in variants {
-        if !kinds.contains(&(one.method, one.time_step_secs)) {
-            kinds.push((one.method, one.time_step_secs));
-        }
-    }
+    let kinds = distinct(variants.iter().map(|one| (one.method, one.time_step_secs)));
     let kind = (variant.method, variant.time_step_secs);
     let index = kinds.iter().position(|one| *one == kind).unwrap_or_default();
     let budgets = variants.iter().filter(|one| (one.method, one.time_step_secs) == kind);

@@ -93,10 +93,10 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    angle without cohesion, drum, degrees       | 18 25 32   | recalled: slopes of discs with μ = 0.5: 20° … 30°
-    rank correlation of angle and Bond, drum    | 0.5 1 1    | recalled: it grows with cohesion
-    angle without cohesion, incline, degrees    | 18 22.5 27 | recalled: discs with μ = 0.5: 20° … 25°
-    rank correlation of angle and Bond, incline | 0.5 1 1    | recalled: it grows with cohesion
+    angle without cohesion, drum, degrees | 18 25 32 | recalled: slopes of discs with μ = 0.5: 20° … 30°
+    rank correlation of angle and Bond, drum | 0.5 1 1 | recalled: it grows with cohesion
+    angle without cohesion, incline, degrees | 18 22.5 27 | recalled: discs with μ = 0.5: 20° … 25°
+    rank correlation of angle and Bond, incline | 0.5 1 1 | recalled: it grows with cohesion
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

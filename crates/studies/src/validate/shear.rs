@@ -224,11 +224,11 @@ fn rate(moment: &Moment) -> f64 {
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    T/N, extended to I = 0                           | 0.2 0.25 0.32  | recalled: da Cruz et al. 2005: 0.25
-    slope of T/N in I                                | 0.6 1.1 1.6    | recalled: da Cruz et al. 2005: 1.1
-    φ, extended to I = 0                             | 0.79 0.81 0.84 | recalled: da Cruz et al. 2005: 0.81
-    slope of φ in I                                  | -0.5 -0.3 -0.1 | recalled: da Cruz et al. 2005: −0.3
-    T of the plates: their difference over their sum | -0.05 0 0.05   | exact: a steady flow gains no momentum
+    T/N, extended to I = 0 | 0.2 0.25 0.32 | recalled: da Cruz et al. 2005: 0.25
+    slope of T/N in I | 0.6 1.1 1.6 | recalled: da Cruz et al. 2005: 1.1
+    φ, extended to I = 0 | 0.79 0.81 0.84 | recalled: da Cruz et al. 2005: 0.81
+    slope of φ in I | -0.5 -0.3 -0.1 | recalled: da Cruz et al. 2005: −0.3
+    T of the plates: their difference over their sum | -0.05 0 0.05 | exact: a steady flow gains no momentum
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

@@ -99,9 +99,9 @@ fn discharge(
 
 /// The rows of [`judge`].
 const PUBLISHED: &str = "
-    k of (W − k d)             | 0.8 1.4 2   | recalled: Beverloo et al. 1961: 1.3 … 1.5
+    k of (W − k d) | 0.8 1.4 2 | recalled: Beverloo et al. 1961: 1.3 … 1.5
     exponent of Q in W − 1.4 d | 1.3 1.5 1.7 | recalled: Beverloo et al. 1961 in the plane: 1.5
-    Q at 4 g over that at g    | 1.9 2 2.1   | exact: dimensions: Q ∝ √g
+    Q at 4 g over that at g | 1.9 2 2.1 | exact: dimensions: Q ∝ √g
 ";
 
 fn judge(all: &Measurements) -> Vec<Measured> {

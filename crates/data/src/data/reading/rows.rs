@@ -24,9 +24,9 @@ const MOST_LISTED: usize = 8;
 /// The discs of one moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedGrains {
-    /// Those that move, in the order of their ids where they have some.
+    /// The discs that move, in the order of their ids if they have ids.
     pub grains: Vec<Grain>,
-    /// Those that do not.
+    /// The discs that do not move.
     pub fixed_discs: Vec<Disc>,
     /// The mass of each grain over its area, kg/m², if masses are given: all grains have the same.
     pub areal_density: Option<f64>,
@@ -61,16 +61,16 @@ fn is_near(one: f64, other: f64) -> bool {
 /// One row of a file, not yet checked.
 #[derive(Debug)]
 pub(super) struct DiscRow {
-    /// Where it is, in whatever way the file's reader tells rows.
+    /// The place of the row, as the reader of the file counts.
     pub place: u64,
     pub id: Option<u64>,
-    /// As the column `kind` has it; a grain where there is none.
+    /// The word of the column `kind`; a grain if there is none.
     pub kind: Option<String>,
     /// In the order of [`NUMBERS`].
     pub numbers: [f64; NUMBERS.len()],
 }
 
-/// True if the columns are there without which there are no discs.
+/// True if all columns are there that discs need.
 pub(super) fn has_needed(names: &[String]) -> bool {
     NEEDED.iter().all(|needed| names.iter().any(|name| name == needed))
 }
@@ -116,7 +116,7 @@ pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
     Error::value("initial-step", step, allowed)
 }
 
-/// The discs that rows are, if they are some. `place` says a row's file, and where it is there: `line 3`.
+/// The discs of rows. `place` gives the file of a row, and its place there: `line 3`.
 pub(super) fn discs_of_rows(
     path: &Path,
     rows: Vec<DiscRow>,
@@ -188,7 +188,7 @@ pub(super) fn discs_of_rows(
     Ok(RecordedGrains { grains, fixed_discs, areal_density })
 }
 
-/// In the order of the ids, or as they came where there are none.
+/// Sorts by ids, and keeps the order if there are none.
 fn by_their_ids<T>(mut discs: Vec<(Option<u64>, T)>) -> Vec<T> {
     discs.sort_by_key(|(id, _)| *id);
     discs.into_iter().map(|(_, disc)| disc).collect()

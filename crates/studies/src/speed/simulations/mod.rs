@@ -12,12 +12,12 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::variants::{self, ChartedVariant, Family};
+use super::variants::{self, Family};
 use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, pareto_front, points};
 use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
-use crate::harness::{Case, Effort, Runner, Threads};
+use crate::harness::{Case, Change, Effort, Runner, Threads};
 use crate::number;
 use crate::output::Progress;
 use crate::scene::{NewPile, Scene};
@@ -49,7 +49,7 @@ const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
 
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let plan = &SimulationPlan::new(bench.effort());
+    let plan = &SimulationPlan::new(bench.effort);
     let configs: Vec<_> =
         (0..plan.piles.len()).map(|pile| plan.config(pile, FINEST_SECS, FLOOR_LAW)).collect();
     let states = States::of(bench.states_folder(), configs.iter())?;
@@ -60,8 +60,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
         name: "chart-simulation".into(),
         sheet: report::sheet(bench, plan, &simulated, &references),
         words: report::words(plan, &references),
-        summary: report::table(plan, &simulated),
-        others: Vec::new(),
+        tables: vec![report::table(plan, &simulated)],
     }])
 }
 
@@ -71,10 +70,8 @@ struct BudgetedVariant {
     variant: usize,
     /// Whose references it is held against.
     law: Stepper,
-    budget: String,
-    solver: SolverSettings,
-    /// Of a stepper without a method; its own number where this is 0.
-    substeps: u32,
+    /// Its name is the budget's.
+    change: Change,
 }
 
 /// What is simulated: piles of the paper's 138 grains.
@@ -82,7 +79,7 @@ struct SimulationPlan {
     time_steps_secs: Vec<f64>,
     /// (Bond, seed) of each pile.
     piles: Vec<(f64, u64)>,
-    variants: Vec<ChartedVariant>,
+    variants: Vec<Change>,
     budgeted: Vec<BudgetedVariant>,
     laws: Vec<Stepper>,
     repeats: u32,
@@ -126,7 +123,7 @@ impl SimulationPlan {
     }
 }
 
-fn budgeted(laws: &[Stepper], effort: Effort) -> (Vec<ChartedVariant>, Vec<BudgetedVariant>) {
+fn budgeted(laws: &[Stepper], effort: Effort) -> (Vec<Change>, Vec<BudgetedVariant>) {
     let residuals: &[f64] = effort.pick(&[1e-2, 1e-4, 1e-6], &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8]);
     let sweeps: &[u32] = effort.pick(&[20], &[10, 40]);
     let all_substeps: &[u32] = effort.pick(&[0], &[0, 16, 64]);
@@ -138,15 +135,17 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> (Vec<ChartedVariant>, Vec<Budge
             if variant.method() != Some(Method::Newton) {
                 continue;
             }
-            variant.stepper = law;
+            variant.config.stepper = Some(law);
             variant.name.push_str(" (range)");
         }
         let number = variants.len();
-        let mut add = |budget: String, solver, substeps| {
-            budgeted.push(BudgetedVariant { variant: number, law, budget, solver, substeps });
+        let mut add = |budget: String, solver: SolverSettings, substeps: u32| {
+            let mut change = Change::of_solver(budget, variant.stepper(), &solver);
+            change.config.parameters.substeps = Some(substeps);
+            budgeted.push(BudgetedVariant { variant: number, law, change });
         };
         if variant.is_default() {
-            add("its own effort".to_owned(), variant.solver, 0);
+            add("its own effort".to_owned(), variant.solver(), 0);
         } else if variant.method().is_some() {
             for &tolerance in residuals {
                 let solver = variant.to_residual(tolerance, MOST_SWEEPS);
@@ -346,7 +345,7 @@ fn run_all<'a>(
     let mut simulated = Vec::with_capacity(points);
     for &time_step_secs in &plan.time_steps_secs {
         for variant in &plan.budgeted {
-            let BudgetedVariant { law, budget, solver, substeps, .. } = variant;
+            let BudgetedVariant { law, change, .. } = variant;
             let charted = &plan.variants[variant.variant];
             let (mut runs, mut failed) = (Vec::new(), None);
             for (pile, (bond, seed)) in plan.piles.iter().enumerate() {
@@ -354,13 +353,12 @@ fn run_all<'a>(
                 if failed.is_some() {
                     continue;
                 }
-                let name = &charted.name;
+                let (name, budget) = (&charted.name, &change.name);
                 let key =
                     format!("{name}, {budget}, Bond {bond}, seed {seed}, dt {time_step_secs:e}");
                 let run = runner.result(&key, || {
                     let mut scene = states.scene(&plan.config(pile, time_step_secs, *law))?;
-                    (scene.stepper, scene.solver) = (charted.stepper, *solver);
-                    scene.parameters.substeps = *substeps;
+                    change.apply(&mut scene);
                     timed_run(&scene, plan.repeats, plan.limit_secs * DURATION_SECS)
                 })?;
                 failed = run.result.failed.clone();

@@ -121,7 +121,7 @@ pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> Repo
         let sum = |number: fn(&TimedRun) -> u64| runs.iter().map(number).sum::<u64>();
         let name = &plan.variants[point.variant.variant].name;
         let mut row = vec![name.clone(), format!("{:e}", point.time_step_secs)];
-        row.push(point.variant.budget.clone());
+        row.push(point.variant.change.name.clone());
         row.push(point.failed.clone().unwrap_or_default());
         let [same, finest] = point.errors.map(|error| error.mean);
         let numbers = [point.speed, same, finest, point.verdicts];
@@ -134,7 +134,5 @@ pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> Repo
         row.extend(numbers.into_iter().map(|number| if is_there { number } else { String::new() }));
         row
     };
-    let rows = simulated.iter().map(row).collect();
-    let name = "chart-simulation-points".to_owned();
-    ReportTable { name, columns: columns.split(' ').collect(), rows }
+    ReportTable::new("chart-simulation-points", columns, simulated.iter().map(row))
 }
