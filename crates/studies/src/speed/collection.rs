@@ -104,21 +104,24 @@ impl CollectionPlan {
         }
     }
 
-    pub(super) fn names(&self) -> Vec<String> {
-        let of_pile =
-            |config: &Config| self.times_secs.iter().map(|&time| self.name(config, time)).collect();
-        self.configs().iter().flat_map(|config| -> Vec<String> { of_pile(config) }).collect()
+    /// Bond number, Δt (s) and time (s) of each step.
+    pub(super) fn steps(&self) -> Vec<[f64; 3]> {
+        let of_pile = |bond, step| self.times_secs.iter().map(move |&time| [bond, step, time]);
+        let steps =
+            |&bond: &f64| self.time_steps_secs.iter().flat_map(move |&step| of_pile(bond, step));
+        self.bonds.iter().flat_map(steps).collect()
     }
 
-    fn name(&self, config: &Config, time_secs: f64) -> String {
+    pub(super) fn names(&self) -> Vec<String> {
         let Self { grains, in_a_box, restitution_threshold, friction, .. } = self;
-        let ParameterChanges { bond, time_step_secs, .. } = config.parameters;
-        let (bond, step) = (bond.unwrap_or_default(), time_step_secs.unwrap_or_default());
         let place = if *in_a_box { " in a box" } else { "" };
         let friction = friction.map_or(String::new(), |it| format!(", μ {it}"));
-        format!(
-            "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time_secs}, threshold {restitution_threshold}"
-        )
+        let name = |[bond, step, time]: [f64; 3]| {
+            format!(
+                "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time}, threshold {restitution_threshold}"
+            )
+        };
+        self.steps().into_iter().map(name).collect()
     }
 
     /// A pile for every Bond number and time step. Going on by one in both, no time step and no

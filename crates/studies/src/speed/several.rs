@@ -17,13 +17,6 @@ const LEAST_DISTANCE: f64 = 1e-6;
 /// Curves of Bonds stand so far aside, as a factor of the number of grains.
 const ASIDE: f64 = 1.12;
 
-/// Piles of one size and kind.
-struct SolutionPlan {
-    name: String,
-    friction: f64,
-    plan: CollectionPlan,
-}
-
 /// What was found of a step.
 struct SearchedStep {
     friction: f64,
@@ -34,7 +27,8 @@ struct SearchedStep {
     found: References,
 }
 
-fn plans(effort: Effort) -> Vec<SolutionPlan> {
+/// Plans of one size and kind each, with their names.
+fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
     let sizes: &[(usize, &[f64])] = match effort {
         Effort::Quick => &[(138, &[0.1])],
         Effort::Full => &[(138, &[0.05, 0.1, 0.2]), (500, &[0.05, 0.1, 0.2]), (2_000, &[0.1])],
@@ -53,7 +47,7 @@ fn plans(effort: Effort) -> Vec<SolutionPlan> {
                 };
                 let state = if in_a_box { "at rest" } else { "moving" };
                 let name = format!("{grains} grains, {state}, μ {friction}");
-                plans.push(SolutionPlan { name, friction, plan });
+                plans.push((name, plan));
             }
         }
     }
@@ -72,7 +66,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let mut all = Vec::new();
     let (columns, mut rows) =
         ("piles steps with_several median_distance largest_distance", Vec::new());
-    for SolutionPlan { name, friction, plan } in plans(bench.effort) {
+    for (name, plan) in plans(bench.effort) {
         let found: Vec<References> = over_steps(bench, "solutions", &plan, Threads::All, |step| {
             Ok(step.next_problem(ReferenceSearch(search)))
         })?;
@@ -87,21 +81,17 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
             told(distances.get(distances.len() / 2)),
             told(distances.last()),
         ]);
-        let CollectionPlan { grains, in_a_box, .. } = plan;
-        let mut found = found.into_iter();
-        for bond in BONDS {
-            for time_step_secs in TIME_STEPS_SECS {
-                let of_pile = found.by_ref().take(plan.times_secs.len());
-                all.extend(of_pile.map(|found| SearchedStep {
-                    friction,
-                    grains,
-                    in_a_box,
-                    bond,
-                    time_step_secs,
-                    found,
-                }));
-            }
-        }
+        let CollectionPlan { grains, in_a_box, friction, .. } = plan;
+        let friction = friction.unwrap_or_default();
+        let steps = plan.steps().into_iter().zip(found);
+        all.extend(steps.map(|([bond, time_step_secs, _], found)| SearchedStep {
+            friction,
+            grains,
+            in_a_box,
+            bond,
+            time_step_secs,
+            found,
+        }));
     }
     let summary = ReportTable::new("chart-solutions-piles", columns, rows);
     let words = format!(

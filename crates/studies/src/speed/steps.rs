@@ -205,7 +205,7 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
         chart.add_end_labels(ends);
         charts.push(chart);
     }
-    let charted = all.first().map_or(&[][..], |timed| &timed.variants);
+    let charted = all.iter().take(1).flat_map(|timed| &timed.variants);
     let caption = bench.caption(&[
         "Median error against median time of the best member of each family, with 1, 2, 4, 8 … sweeps or factorisations, \
          warm start. The error is the distance to the nearest solution of Coulomb's law that was found.",

@@ -1,7 +1,7 @@
 //! The solver variants that are charted: every method of the registry with its settings.
 
 use crate::chart::{PALETTE, Rgb};
-use crate::harness::Change;
+use crate::harness::{Change, distinct};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
@@ -55,10 +55,10 @@ impl Family {
 }
 
 /// Which of these variants are of which family, for captions.
-pub(super) fn members(variants: &[Change]) -> String {
+pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) -> String {
     let of = |family: Family| {
-        let its = variants.iter().filter(|variant| variant.family() == family);
-        let names: Vec<&str> = its.map(|variant| &*variant.name).collect();
+        let its = variants.clone().filter(|variant| variant.family() == family);
+        let names = distinct(its.map(|variant| &*variant.name));
         (!names.is_empty()).then(|| format!("{}: {}", family.name(), names.join(", ")))
     };
     let all: Vec<String> = Family::ALL.into_iter().filter_map(of).collect();

@@ -60,14 +60,13 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
         name: "chart-simulation".into(),
         sheet: report::sheet(bench, plan, &simulated, &references),
         words: report::words(plan, &references),
-        tables: vec![report::table(plan, &simulated)],
+        tables: vec![report::table(&simulated)],
     }])
 }
 
 /// A variant with its budget: how well it is to solve its steps.
 struct BudgetedVariant {
-    /// Number in `SimulationPlan::variants`.
-    variant: usize,
+    charted: Change,
     /// Whose references it is held against.
     law: Stepper,
     /// Its name is the budget's.
@@ -79,7 +78,6 @@ struct SimulationPlan {
     time_steps_secs: Vec<f64>,
     /// (Bond, seed) of each pile.
     piles: Vec<(f64, u64)>,
-    variants: Vec<Change>,
     budgeted: Vec<BudgetedVariant>,
     laws: Vec<Stepper>,
     repeats: u32,
@@ -91,12 +89,10 @@ impl SimulationPlan {
     /// What the law range costs is told by one good method, and by long runs.
     fn new(effort: Effort) -> Self {
         let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
-        let (variants, budgeted) = budgeted(laws, effort);
         Self {
             time_steps_secs: effort.pick(vec![1e-3, 5e-3], vec![1e-3, 2e-3, 5e-3]),
             piles: piles(effort),
-            variants,
-            budgeted,
+            budgeted: budgeted(laws, effort),
             laws: laws.to_vec(),
             repeats: effort.pick(1, 2),
             limit_secs: effort.pick(2.0, 10.0),
@@ -123,11 +119,11 @@ impl SimulationPlan {
     }
 }
 
-fn budgeted(laws: &[Stepper], effort: Effort) -> (Vec<Change>, Vec<BudgetedVariant>) {
+fn budgeted(laws: &[Stepper], effort: Effort) -> Vec<BudgetedVariant> {
     let residuals: &[f64] = effort.pick(&[1e-2, 1e-4, 1e-6], &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8]);
     let sweeps: &[u32] = effort.pick(&[20], &[10, 40]);
     let all_substeps: &[u32] = effort.pick(&[0], &[0, 16, 64]);
-    let (mut variants, mut budgeted) = (Vec::new(), Vec::new());
+    let mut budgeted = Vec::new();
     let of_law = |law| variants::all().into_iter().map(move |variant| (law, variant));
     let models = variants::models().into_iter().map(|model| (Stepper::Moreau, model));
     for (law, mut variant) in laws.iter().copied().flat_map(of_law).chain(models) {
@@ -138,11 +134,10 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> (Vec<Change>, Vec<BudgetedVaria
             variant.config.stepper = Some(law);
             variant.name.push_str(" (range)");
         }
-        let number = variants.len();
         let mut add = |budget: String, solver: SolverSettings, substeps: u32| {
             let mut change = Change::of_solver(budget, variant.stepper(), &solver);
             change.config.parameters.substeps = Some(substeps);
-            budgeted.push(BudgetedVariant { variant: number, law, change });
+            budgeted.push(BudgetedVariant { charted: variant.clone(), law, change });
         };
         if variant.is_default() {
             add("its own effort".to_owned(), variant.solver(), 0);
@@ -163,9 +158,8 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> (Vec<Change>, Vec<BudgetedVaria
                 add(budget, variant.sweeps(1), count);
             }
         }
-        variants.push(variant);
     }
-    (variants, budgeted)
+    budgeted
 }
 
 /// (Bond, seed) of each pile of 138 grains. Bond numbers are dealt out to the seeds: each is met by several, and each
@@ -345,8 +339,7 @@ fn run_all<'a>(
     let mut simulated = Vec::with_capacity(points);
     for &time_step_secs in &plan.time_steps_secs {
         for variant in &plan.budgeted {
-            let BudgetedVariant { law, change, .. } = variant;
-            let charted = &plan.variants[variant.variant];
+            let BudgetedVariant { charted, law, change } = variant;
             let (mut runs, mut failed) = (Vec::new(), None);
             for (pile, (bond, seed)) in plan.piles.iter().enumerate() {
                 progress.advance(1);
