@@ -7,7 +7,6 @@ use std::time::Instant;
 use super::studies::FinishedStudy;
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
-
 use crate::harness::{Bench, Effort};
 use crate::output::{note_line, print_line, print_text};
 use crate::solver::worst;

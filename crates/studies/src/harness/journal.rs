@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{ErrorKind::NotFound, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -129,15 +129,21 @@ fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 pub(crate) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for folder in folders {
-        for entry in std::fs::read_dir(folder).map_err(|error| Error::file(folder, error))? {
-            let path = entry.map_err(|error| Error::file(folder, error))?.path();
-            if path.extension().is_some_and(|ending| ending == ENDING) {
-                paths.push(path);
-            }
-        }
+        let files = files_in(folder)?.into_iter();
+        paths.extend(files.filter(|path| path.extension().is_some_and(|it| it == ENDING)));
     }
     paths.sort();
     Ok(paths)
+}
+
+/// The files and folders in a folder; none if it is missing.
+pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = match std::fs::read_dir(folder) {
+        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(|error| Error::file(folder, error))?,
+    };
+    let path = |entry: std::io::Result<std::fs::DirEntry>| entry.map(|entry| entry.path());
+    entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
 /// The journals of a folder.

@@ -251,14 +251,14 @@ fn claim(
 
 /// Sweeps out a folder's results, which no other program may be writing. What this program did not write stays.
 fn throw_away(folder: &Path) -> Result<()> {
-    let of_series = files_in(&folder.join(SERIES))?;
+    let of_series = journal::files_in(&folder.join(SERIES))?;
     let tables = [TABLE, REPORT].map(|name| folder.join(name));
     for path in journal::free_journals(folder)?.into_iter().chain(tables).chain(of_series) {
         if path.is_file() && is_recognised(&path)? {
             remove_if_there(&path)?;
         }
     }
-    for path in files_in(&folder.join(DATA))?.iter().filter(|path| path.is_dir()) {
+    for path in journal::files_in(&folder.join(DATA))?.iter().filter(|path| path.is_dir()) {
         remove_recording(path)?;
     }
     for inner in [SERIES, DATA] {
@@ -266,16 +266,6 @@ fn throw_away(folder: &Path) -> Result<()> {
         let _ = std::fs::remove_dir(folder.join(inner));
     }
     Ok(())
-}
-
-/// What is in a folder; nothing where there is none.
-fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = match std::fs::read_dir(folder) {
-        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(|error| Error::file(folder, error))?,
-    };
-    let path = |entry: std::io::Result<std::fs::DirEntry>| entry.map(|entry| entry.path());
-    entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
 fn other_study(folder: &Path, study: &Study, found: &Label) -> Error {
