@@ -3,8 +3,8 @@
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::draft::DraftFile;
 use crate::error::{Error, Result};
-use crate::output::DraftFile;
 
 /// Bytes of the largest page of a table, and of the largest problem.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
@@ -20,7 +20,7 @@ const MOST_OF_LINE: usize = 1 << 20;
 pub(crate) fn open(path: &Path, form: &str) -> Result<DraftFile> {
     let refuse = |said: &dyn std::fmt::Display| Error::unread(path, said, form);
     #[cfg(target_arch = "wasm32")]
-    return crate::output::given_file(path).map_err(|error| refuse(&error));
+    return crate::memory::given_file(path).map_err(|error| refuse(&error));
     #[cfg(not(target_arch = "wasm32"))]
     open_plain(path, &refuse)
 }

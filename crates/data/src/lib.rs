@@ -14,7 +14,10 @@ use slump_core::{contact, error, number, scene, setting, sim, solver, world};
 pub mod column_spec;
 pub mod config;
 pub mod data;
+mod draft;
 pub mod granular;
 pub mod input;
 pub mod interchange;
+#[cfg(any(target_arch = "wasm32", test))]
+mod memory;
 pub mod output;

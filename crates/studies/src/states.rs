@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::journal::{sealed_text, text_of};
 use crate::config::{Config, parse_discs, write_discs};
 use crate::error::{Error, Result};
+use crate::harness::journal::{sealed_text, text_of};
 use crate::output::{Progress, check_writable, note_line, write_file};
 use crate::scene::{Deposition, NewPile, Scene, Settling, settle};
 use crate::world::Grain;

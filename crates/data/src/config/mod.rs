@@ -1,5 +1,7 @@
 //! What a user asks of a run, as options, a scene file, a line of a study, or a saved run.
 
+mod facts;
+mod option_words;
 mod options;
 mod provenance;
 mod recorded_scene;
@@ -7,10 +9,10 @@ mod run_config;
 mod saved_state;
 mod scene_file;
 
-pub use options::{parser_of, refusal_of};
-pub use provenance::{
-    Provenance, asked_time_secs, joined, run_facts, scene_facts, words_of, words_up_to,
-};
+pub use facts::{run_facts, scene_facts};
+pub use option_words::parser_of;
+pub use options::refusal_of;
+pub use provenance::{Provenance, asked_time_secs, joined, words_of, words_up_to};
 pub use run_config::{BaseScene, Config, SceneSource};
 pub use saved_state::SavedState;
 pub use scene_file::{parse_discs, read_scene, scene_to_toml, write_discs};

@@ -5,15 +5,16 @@ use std::error::Error as _;
 use std::fmt;
 use std::num::{ParseFloatError, ParseIntError};
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+use clap::builder::ValueParser;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use super::option_words::possible;
 use super::{Config, SceneSource};
 use crate::error::{Error, Result, legible};
-use crate::setting::{About, Changes, Kind, Settable, Value, Word};
+use crate::setting::{About, Changes, Kind, Value};
 use crate::sim::Settings;
 
 impl Config {
@@ -63,21 +64,6 @@ impl Args for Config {
     fn augment_args_for_update(command: Command) -> Command {
         Self::augment_args(command)
     }
-}
-
-/// The parser of a word, for options that are not settings.
-pub fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
-    let words = if let Kind::Word(words) = T::KIND { words } else { &[] };
-    let said = |said: String| {
-        let word = words.iter().find(|word| word.name == said);
-        word.and_then(|word| T::of(Value::Word(word.name))).ok_or("one of the words")
-    };
-    possible(words).try_map(said).into()
-}
-
-fn possible(words: &'static [Word]) -> PossibleValuesParser {
-    let word = |word: &Word| PossibleValue::new(word.name).help(word.hint);
-    PossibleValuesParser::new(words.iter().map(word))
 }
 
 /// The option of a setting.

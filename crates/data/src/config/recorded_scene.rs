@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::scene_facts;
+use super::facts::scene_facts;
 use crate::data::facts_of_recording;
 use crate::error::{Error, Result};
 use crate::scene::Scene;

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::MapAccess;
 
+use super::SavedState;
+use super::option_words::parser_of;
 use super::recorded_scene::check_starts_pile;
 use super::scene_file::{read_unsettled, unsettled};
-use super::{SavedState, parser_of};
 use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
 use crate::scene::{

@@ -1,15 +1,14 @@
 //! The tables of a recording: which columns they have, and what these hold.
 
 use super::means;
+use super::other_bodies::{OTHER_KINDS, OtherBodies};
 use super::step_columns::STEP_COLUMNS;
 use super::table::{Table, place_of};
 use super::walls::fixed_discs;
 use crate::column_spec::CellValue::{Count, Flag, Name, Number, SomeNumber, Word};
 use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
-use crate::sim::{
-    ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Stepper,
-};
+use crate::sim::{ContactState, ContactStatus, GrainState, Moment, Observables, Stepper};
 
 /// The tables that formats write for each frame, without a row.
 pub(super) fn empty_tables_of_frames() -> [Table; 6] {
@@ -129,41 +128,6 @@ fn grains_of(rows: &[GrainTableRow], measures: &[GrainMeasures]) -> Table {
 }
 
 const CONTACTS: &str = "contacts";
-
-/// Words of the column `kind_j`.
-pub(super) const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
-
-/// How tables call bodies j.
-pub(super) struct OtherBodies<'a> {
-    moment: &'a Moment,
-    first_boundary: u64,
-    /// Shapes and numbers of boundaries, behind a name that is none.
-    pub names: Vec<String>,
-}
-
-impl<'a> OtherBodies<'a> {
-    pub(super) fn of(moment: &'a Moment) -> Self {
-        let boundaries = moment.surroundings.boundaries.iter().enumerate();
-        let names = boundaries.map(|(number, boundary)| format!("{} {number}", boundary.word()));
-        let discs = moment.surroundings.fixed_discs.len() as u64;
-        Self {
-            moment,
-            first_boundary: u64::from(moment.first_fixed_id) + discs,
-            names: std::iter::once(String::new()).chain(names).collect(),
-        }
-    }
-
-    /// Place of its kind's word, number, and place of its name.
-    pub(super) fn told(&self, other: OtherBody) -> (u32, u64, u32) {
-        match other {
-            OtherBody::Grain(number) => (0, self.moment.id(number).into(), 0),
-            OtherBody::FixedDisc(number) => {
-                (1, u64::from(self.moment.first_fixed_id) + u64::from(number), 0)
-            }
-            OtherBody::Boundary(number) => (2, self.first_boundary + u64::from(number), 1 + number),
-        }
-    }
-}
 
 const STATUSES: &[&str] =
     &[ContactStatus::Open.name(), ContactStatus::Stick.name(), ContactStatus::Slip.name()];

@@ -5,8 +5,8 @@ use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
 use std::path::{Path, PathBuf};
 
 use super::columns::empty_tables_of_frames;
+use super::folder_files::make_folder;
 use super::format::{Format, Frame, RecordingMark, RunFacts, check_count};
-use super::recording_folder::make_folder;
 use super::table::{Table, Values};
 use crate::error::{Error, Result};
 use crate::output::{GrowingFile, remove_if_there};

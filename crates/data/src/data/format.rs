@@ -1,20 +1,14 @@
-//! What all formats have in common, and which there are.
+//! What all formats have in common.
 
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::columns;
-use super::csv::Csv;
-use super::lammps::Lammps;
 use super::means::Means;
-#[cfg(feature = "data")]
-use super::parquet::Parquet;
 use super::table::Table;
-use super::vtk::{self, Vtk};
 use crate::error::{Error, Result};
 use crate::granular::{MomentMeasures, measure};
-use crate::scene::{DataSettings, FormatName};
 use crate::sim::{ForceSums, Moment, Observables};
 
 /// What is to be known of a recording beside its tables: for the metadata of its files.
@@ -138,52 +132,4 @@ pub(super) trait Format: Send {
     /// Drops what steps after `step` measured, and all frames after that of the step `last_frame`, or all that
     /// there are, so that the run can go on from `step`.
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
-}
-
-/// What is written where nothing is said.
-pub const DEFAULT_FORMAT: FormatName =
-    if cfg!(feature = "data") { FormatName::Parquet } else { FormatName::Csv };
-
-/// The formats that are asked for, each once.
-///
-/// # Errors
-/// Where this build cannot write one of them.
-pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
-    if settings.formats.is_empty() {
-        return Ok(vec![DEFAULT_FORMAT]);
-    }
-    let formats = FormatName::ALL.iter().copied().filter(|it| settings.formats.contains(it));
-    formats.map(|format| check_format(format).map(|()| format)).collect()
-}
-
-/// Fails where this build cannot write it.
-///
-/// # Errors
-/// Says what is missing.
-pub fn check_format(format: FormatName) -> Result<()> {
-    if cfg!(feature = "data") || format != FormatName::Parquet {
-        return Ok(());
-    }
-    let names: Vec<_> =
-        FormatName::ALL.iter().filter(|&&it| it != format).map(|it| it.name()).collect();
-    let allowed = format!("{} in this build, which has not the feature data", names.join(", "));
-    Err(Error::value("data-format", format.name(), allowed))
-}
-
-pub(super) fn start_format(
-    format: FormatName,
-    folder: &Path,
-    facts: &RunFacts,
-) -> Result<Box<dyn Format>> {
-    check_format(format)?;
-    match format {
-        #[cfg(feature = "data")]
-        FormatName::Parquet => Ok(Box::new(Parquet::start(folder, facts)?)),
-        #[cfg(not(feature = "data"))]
-        FormatName::Parquet => Err(Error::value("data-format", format.name(), "built in")),
-        FormatName::Csv => Ok(Box::new(Csv::start(folder, facts)?)),
-        FormatName::Vtk => Ok(Box::new(Vtk::start(folder, &vtk::BODIES, facts)?)),
-        FormatName::Fields => Ok(Box::new(Vtk::start(folder, &vtk::FIELDS, facts)?)),
-        FormatName::Ovito => Ok(Box::new(Lammps::start(folder, facts)?)),
-    }
 }

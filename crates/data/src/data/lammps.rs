@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
+use super::folder_files::{make_folder, remove};
 use super::format::{Format, Frame, RecordingMark, RunFacts, check_count};
-use super::recording_folder::{make_folder, remove};
 use super::table::{Column, Table, Values};
 use crate::error::{Error, Result};
 use crate::output::GrowingFile;

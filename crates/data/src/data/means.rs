@@ -3,7 +3,7 @@
 
 use glam::{DMat2, DVec2};
 
-use super::columns::{OTHER_KINDS, OtherBodies};
+use super::other_bodies::{OTHER_KINDS, OtherBodies};
 use super::table::Table;
 use super::walls::{is_of, place_of, walls};
 use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber, Word};

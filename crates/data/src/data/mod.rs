@@ -7,9 +7,12 @@
 
 mod columns;
 mod csv;
+mod folder_files;
 mod format;
+mod formats;
 mod lammps;
 mod means;
+mod other_bodies;
 #[cfg(feature = "data")]
 mod parquet;
 mod reading;
@@ -22,7 +25,8 @@ mod walls;
 
 pub use crate::scene::{DataSettings, FormatName};
 pub use columns::Observed;
-pub use format::{DEFAULT_FORMAT, Frame, RecordingMark, RunFacts, check_format, formats_of};
+pub use format::{Frame, RecordingMark, RunFacts};
+pub use formats::{DEFAULT_FORMAT, check_format, formats_of};
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};
 pub use recording::{FrameSchedule, Recording, Times};
 pub(crate) use recording_folder::facts_of_recording;

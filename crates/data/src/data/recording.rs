@@ -6,8 +6,10 @@ use std::thread::JoinHandle;
 
 use super::columns::{FrameRow, frames};
 use super::csv::{KeptRows, TextTable};
-use super::format::{Format, Frame, RecordingMark, RunFacts, check_format, start_format};
-use super::recording_folder::{FRAMES, RecordingFolder, check_manifest, write_manifest};
+use super::folder_files::FRAMES;
+use super::format::{Format, Frame, RecordingMark, RunFacts};
+use super::formats::{check_format, start_format};
+use super::recording_folder::{RecordingFolder, check_manifest, write_manifest};
 use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{ForceSums, Moment, Observables, Simulation};

@@ -1,12 +1,12 @@
 //! The folder of a recording: which of its files are a recording's, the lock by which it is one recording's alone,
 //! and `data.json`, which says what a recording is made of.
 
-use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
 use super::columns::empty_tables;
+use super::folder_files::{FRAMES, files_named, part_number, remove};
 use super::format::RunFacts;
 use super::table::{Column, Values};
 use super::{csv, lammps, vtk};
@@ -18,12 +18,6 @@ use crate::scene::FormatName;
 
 /// What a recording is made of.
 const MANIFEST: &str = "data.json";
-/// The list of frames that are there in every format.
-pub(super) const FRAMES: &str = "frames.csv";
-/// What the name of a part of a table in Parquet begins with, …
-const BEGINNING_OF_PART: &str = "part-";
-/// … and ends with.
-const ENDING_OF_PART: &str = ".parquet";
 
 /// A folder that no other recording is written to while this is there.
 pub struct RecordingFolder {
@@ -125,64 +119,10 @@ fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// The plain files of a folder whose names are a recording's, sorted, with what a kill left of such; none
-/// where there is no folder. Links and pipes are nobody's leftovers.
-pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
-    let refuse = |error| Error::file(folder, error);
-    let entries = match std::fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(refuse(error)),
-    };
-    let mut files = Vec::new();
-    for entry in entries {
-        let entry = entry.map_err(refuse)?;
-        let is_plain = entry.file_type().map_err(refuse)?.is_file();
-        if is_plain && entry.file_name().to_str().is_some_and(|name| is_ours(final_name(name))) {
-            files.push(entry.path());
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
 /// True if a file is what a kill left of one.
 fn is_left(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
     name.is_some_and(|name| final_name(name) != name)
-}
-
-/// Removes a file.
-pub(super) fn remove(path: &Path) -> Result<()> {
-    std::fs::remove_file(path).map_err(|error| Error::file(path, error))
-}
-
-/// Makes a folder where it is not there.
-pub(super) fn make_folder(path: &Path) -> Result<()> {
-    std::fs::create_dir_all(path)
-        .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
-}
-
-/// The part of that number in a table's folder.
-#[cfg(feature = "data")]
-pub(super) fn path_of_part(folder: &Path, number: u64) -> PathBuf {
-    folder.join(format!("{BEGINNING_OF_PART}{number:05}{ENDING_OF_PART}"))
-}
-
-fn part_number(name: &str) -> Option<u64> {
-    let digits = name.strip_prefix(BEGINNING_OF_PART)?.strip_suffix(ENDING_OF_PART)?;
-    digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?
-}
-
-/// The parts in a table's folder with their numbers, by which they are sorted.
-pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
-    let paths = files_named(folder, |name| part_number(name).is_some())?;
-    let number = |path: &Path| path.file_name().and_then(|name| part_number(name.to_str()?));
-    let numbered = paths.into_iter().filter_map(|path| Some((number(&path)?, path)));
-    let mut numbered: Vec<_> = numbered.collect();
-    // Beyond 99999 parts, names have more digits and sort otherwise.
-    numbered.sort();
-    Ok(numbered)
 }
 
 pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFacts) -> Result<()> {

@@ -9,32 +9,8 @@ use std::io::{
 };
 use std::path::{Path, PathBuf};
 
+use crate::draft::{DraftFile, nameless_file};
 use crate::error::{Error, Result};
-
-/// A file that has no name yet: on disk, or where there is none in memory.
-#[cfg(not(target_arch = "wasm32"))]
-pub type DraftFile = File;
-/// A file that has no name yet: on disk, or where there is none in memory.
-#[cfg(target_arch = "wasm32")]
-pub type DraftFile = super::memory::MemoryFile;
-
-/// A file without a name in a folder: it is gone with the process, however that ends.
-///
-/// # Errors
-/// Where the system makes none.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn nameless_file(folder: &Path) -> std::io::Result<DraftFile> {
-    tempfile::tempfile_in(folder)
-}
-
-/// A file without a name in a folder: it is gone with the process, however that ends.
-///
-/// # Errors
-/// None.
-#[cfg(target_arch = "wasm32")]
-pub fn nameless_file(_: &Path) -> std::io::Result<DraftFile> {
-    Ok(DraftFile::default())
-}
 
 /// Ending of the name that a file has until it is whole.
 const ENDING_OF_DRAFT: &str = ".part";
@@ -110,7 +86,7 @@ impl PendingFile {
     /// Has it fetched by whoever has a place for it.
     #[cfg(target_arch = "wasm32")]
     fn put(&mut self, _safe: bool) -> std::io::Result<()> {
-        super::memory::keep_written(&self.destination.path, &self.file);
+        crate::memory::keep_written(&self.destination.path, &self.file);
         Ok(())
     }
 

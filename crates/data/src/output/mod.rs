@@ -4,20 +4,19 @@
 mod files;
 mod growing;
 mod locks;
-#[cfg(any(target_arch = "wasm32", test))]
-mod memory;
 mod recognised;
 mod seal;
 mod terminal;
 
+pub use crate::draft::{DraftFile, nameless_file};
+#[cfg(target_arch = "wasm32")]
+pub use crate::memory::{give_file, given_file, written_files};
 pub use files::{
-    DraftFile, PendingFile, Texts, check_file, check_new_file, check_writable, final_name,
-    folder_of, nameless_file, remove_drafts, remove_if_there, resolved, write_file,
+    PendingFile, Texts, check_file, check_new_file, check_writable, final_name, folder_of,
+    remove_drafts, remove_if_there, resolved, write_file,
 };
 pub use growing::{GrowingFile, end_of_last};
 pub use locks::{FolderLock, Locked, SharedFolder, in_use, lock_of};
-#[cfg(target_arch = "wasm32")]
-pub use memory::{give_file, given_file, written_files};
 pub use recognised::{check_recognised, is_recognised};
 pub use seal::Seal;
 pub use terminal::{

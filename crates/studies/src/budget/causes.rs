@@ -43,31 +43,36 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    pub(crate) fn share(self) -> Share {
+    /// The share, the name, and the subject of sentences, in which `{}` is the change.
+    const fn row(self) -> (Share, &'static str, &'static str) {
         match self {
-            Self::TimeStep | Self::Unsolved | Self::Start => Share::Method,
-            Self::ContactLaw
-            | Self::Cone
-            | Self::TouchTolerance
-            | Self::FrictionModel
-            | Self::RestitutionThreshold => Share::Law,
-            Self::Packing | Self::NumberOfGrains => Share::Grains,
+            Self::TimeStep => (Share::Method, "time step", "the {}"),
+            Self::Unsolved => {
+                (Share::Method, "what steps leave unsolved", "what steps leave unsolved")
+            }
+            Self::Start => (Share::Method, "where solves start", "the change to {}"),
+            Self::ContactLaw => {
+                (Share::Law, "contact law", "the contact law {} in place of this one")
+            }
+            Self::Cone => (Share::Law, "cone of friction", "the {}"),
+            Self::TouchTolerance => (Share::Law, "touch tolerance", "the {}"),
+            Self::FrictionModel => (Share::Law, "friction model", "friction by {}"),
+            Self::RestitutionThreshold => (Share::Law, "restitution threshold", "{}"),
+            Self::Packing => (Share::Grains, "packing", "a pile {}"),
+            Self::NumberOfGrains => (Share::Grains, "number of grains", "a pile of {}"),
         }
     }
 
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::TimeStep => "time step",
-            Self::Unsolved => "what steps leave unsolved",
-            Self::Start => "where solves start",
-            Self::ContactLaw => "contact law",
-            Self::Cone => "cone of friction",
-            Self::TouchTolerance => "touch tolerance",
-            Self::FrictionModel => "friction model",
-            Self::RestitutionThreshold => "restitution threshold",
-            Self::Packing => "packing",
-            Self::NumberOfGrains => "number of grains",
-        }
+    pub(crate) const fn share(self) -> Share {
+        self.row().0
+    }
+
+    pub(crate) const fn words(self) -> &'static str {
+        self.row().1
+    }
+
+    pub(crate) const fn subject(self) -> &'static str {
+        self.row().2
     }
 }
 
@@ -98,74 +103,72 @@ const THRESHOLD: f64 = 2.0;
 /// `resizes` is true where their number can be changed.
 pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
     let base = scene.settings();
+    let (parameters, solver) = (base.parameters, base.solver);
     let mut all = Vec::new();
-    let mut add = |cause, label: String, settings: Settings, cost| {
+    let mut add = |cause, label: &str, cost, settings: Settings| {
         let mut changed = scene.clone();
         changed.set_settings(settings);
-        // What a scene does not take is no cause.
+        // A change that a scene does not take is not a cause.
         if settings != base && changed.simulation().is_ok() {
-            all.push(Variant { cause, label, settings, pile: None, cost });
+            all.push(Variant { cause, label: label.to_owned(), settings, pile: None, cost });
         }
+    };
+    let by = |change: &dyn Fn(&mut Settings)| {
+        let mut settings = base;
+        change(&mut settings);
+        settings
     };
     if base.stepper.uses_method() {
         let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
         let settings = tighter(base, is_driven);
         let label = format!("steps solved by {}", settings.solver.method);
-        add(Cause::Unsolved, label, settings, 4.0);
-        // A step of a flowing pile has several solutions, and where a solve starts decides which it finds.
-        let mut settings = base;
-        settings.solver.warm_start ^= true;
-        let label = if base.solver.warm_start { "cold starts" } else { "warm starts" };
-        add(Cause::Start, label.into(), settings, 4.0);
+        add(Cause::Unsolved, &label, 4.0, settings);
+        // A step of a flowing pile has several solutions, and the start of a solve decides which one it finds.
+        let label = if solver.warm_start { "cold starts" } else { "warm starts" };
+        add(Cause::Start, label, 4.0, by(&|it| it.solver.warm_start ^= true));
     }
     for divisor in DIVISORS {
-        let step = base.parameters.time_step_secs / f64::from(divisor);
+        let step = parameters.time_step_secs / f64::from(divisor);
         let label = format!("Δt {} s", short(step));
-        add(Cause::TimeStep, label, base.over(step), f64::from(divisor));
+        add(Cause::TimeStep, &label, f64::from(divisor), base.over(step));
     }
     for stepper in [Stepper::Moreau, Stepper::Range, Stepper::Dem] {
         if stepper != base.stepper {
-            let settings = at_equal_work(scene, stepper);
-            add(Cause::ContactLaw, stepper.name().into(), settings, 4.0);
+            add(Cause::ContactLaw, stepper.name(), 4.0, at_equal_work(scene, stepper));
         }
     }
-    let rubs = scene.physics.friction && base.parameters.friction > 0.0;
-    let coheres = scene.physics.cohesion && base.parameters.bond > 0.0;
+    let rubs = scene.physics.friction && parameters.friction > 0.0;
+    let coheres = scene.physics.cohesion && parameters.bond > 0.0;
     if rubs && coheres && base.stepper.reads("cone") {
-        let mut settings = base;
-        settings.parameters.cone = match base.parameters.cone {
+        let cone = match parameters.cone {
             FrictionCone::Shifted => FrictionCone::Compressive,
             FrictionCone::Compressive => FrictionCone::Shifted,
         };
-        add(Cause::Cone, format!("cone {}", settings.parameters.cone), settings, 1.0);
+        add(Cause::Cone, &format!("cone {cone}"), 1.0, by(&|it| it.parameters.cone = cone));
     }
     if coheres && base.stepper.reads("touch-tolerance") {
-        let mut settings = base;
-        let tolerance =
-            if base.parameters.touch_tolerance >= TOUCH_TOLERANCE { 0.0 } else { TOUCH_TOLERANCE };
-        settings.parameters.touch_tolerance = tolerance;
+        let is_large = parameters.touch_tolerance >= TOUCH_TOLERANCE;
+        let tolerance = if is_large { 0.0 } else { TOUCH_TOLERANCE };
         let label = format!("touch tolerance {} d", short(tolerance));
-        add(Cause::TouchTolerance, label, settings, 1.0);
+        let settings = by(&|it| it.parameters.touch_tolerance = tolerance);
+        add(Cause::TouchTolerance, &label, 1.0, settings);
     }
     if rubs && base.stepper.reads("friction-model") {
-        let mut settings = base;
-        let is_coulomb = base.solver.friction_model == FrictionModel::Coulomb;
-        settings.solver.method = Method::Auto;
-        settings.solver.friction_model =
-            if is_coulomb { FrictionModel::Tresca } else { FrictionModel::Coulomb };
-        let name = if is_coulomb { "bounds of friction" } else { "Coulomb's law" };
-        add(Cause::FrictionModel, name.into(), settings, 2.0);
-    }
-    if base.parameters.restitution > 0.0 && base.stepper.reads("restitution-threshold") {
-        let mut settings = base;
-        let threshold = if base.parameters.restitution_threshold > 0.0 { 0.0 } else { THRESHOLD };
-        settings.parameters.restitution_threshold = threshold;
-        let label = if threshold > 0.0 {
-            format!("No restitution below {threshold} g·Δt")
-        } else {
-            "Restitution at every speed".into()
+        let (model, label) = match solver.friction_model {
+            FrictionModel::Coulomb => (FrictionModel::Tresca, "bounds of friction"),
+            _ => (FrictionModel::Coulomb, "Coulomb's law"),
         };
-        add(Cause::RestitutionThreshold, label, settings, 1.0);
+        let settings =
+            by(&|it| (it.solver.method, it.solver.friction_model) = (Method::Auto, model));
+        add(Cause::FrictionModel, label, 2.0, settings);
+    }
+    if parameters.restitution > 0.0 && base.stepper.reads("restitution-threshold") {
+        let (threshold, label) = match parameters.restitution_threshold > 0.0 {
+            true => (0.0, "Restitution at every speed".to_owned()),
+            false => (THRESHOLD, format!("No restitution below {THRESHOLD} g·Δt")),
+        };
+        let settings = by(&|it| it.parameters.restitution_threshold = threshold);
+        add(Cause::RestitutionThreshold, &label, 1.0, settings);
     }
     let Some(pile) = pile else { return all };
     let mut of_pile = |cause, label: String, pile: NewPile, cost| {

@@ -8,6 +8,7 @@ mod causes;
 mod collect;
 mod quantity;
 mod report;
+mod rows;
 mod starts;
 mod words;
 
@@ -17,20 +18,19 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-pub use self::answer::Trust;
-use self::answer::{Design, QuantityBudget, budget_of};
+use self::answer::budget_of;
 use self::causes::variants;
 use self::collect::{BudgetEnd, Limits, Ran, SeriesRun, collect};
 use self::quantity::{BudgetQuantity, Window};
+pub use self::rows::Trust;
+use self::rows::{Design, QuantityBudget};
 use self::starts::{RunValues, Starts, run, said_of};
 use crate::config::{Config, joined};
 use crate::error::{self, Error, Result};
-use crate::journal::{self, Journal};
+use crate::harness::{FinishedCase, Journal, Runner, Shard, journal};
 use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts};
-use crate::runner::{FinishedCase, Runner};
 use crate::scene::Scene;
 use crate::sim::Settings;
-use crate::sweep::Shard;
 
 /// What a budget is asked for.
 #[derive(Clone, Debug)]

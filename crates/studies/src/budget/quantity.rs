@@ -9,20 +9,15 @@ use crate::sim::{Observables, Simulation};
 /// Moments of a window at which the table `measures` is looked at: a moment takes as long as several steps.
 const MOMENTS: u64 = 100;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Statistic {
-    AtEnd,
-    Mean,
-    Min,
-    Max,
-    Total,
-}
+/// A number of the values of a window.
+type Statistic = fn(&Found) -> f64;
 
 const STATISTICS: [(&str, Statistic); 4] = [
-    ("mean", Statistic::Mean),
-    ("min", Statistic::Min),
-    ("max", Statistic::Max),
-    ("total", Statistic::Total),
+    ("mean", |found| found.sum / found.count as f64),
+    // A comparison with NaN is false in either order.
+    ("min", |found| if found.sum.is_nan() { f64::NAN } else { found.least }),
+    ("max", |found| if found.sum.is_nan() { f64::NAN } else { found.most }),
+    ("total", |found| found.sum),
 ];
 
 #[derive(Clone, Copy)]
@@ -38,7 +33,8 @@ pub(crate) struct BudgetQuantity {
     pub name: String,
     /// Its unit; empty where it has none.
     pub unit: &'static str,
-    statistic: Statistic,
+    /// None for the last value.
+    statistic: Option<Statistic>,
     column: RecordedColumn,
 }
 
@@ -48,9 +44,9 @@ impl std::str::FromStr for BudgetQuantity {
     fn from_str(text: &str) -> Result<Self> {
         let of = text.split_once('(').and_then(|(statistic, rest)| {
             let known = STATISTICS.iter().find(|(name, _)| *name == statistic.trim())?;
-            Some((known.1, rest.strip_suffix(')')?.trim()))
+            Some((Some(known.1), rest.strip_suffix(')')?.trim()))
         });
-        let (statistic, column) = of.unwrap_or((Statistic::AtEnd, text));
+        let (statistic, column) = of.unwrap_or((None, text));
         let (column, unit) = column_of(column).ok_or_else(|| {
             let names = names().collect::<Vec<_>>().join(", ");
             let allowed = format!("mean(x), min(x), max(x), total(x), or x itself for its last value, where x is one of {names}");
@@ -135,7 +131,7 @@ impl<'a> QuantityWatch<'a> {
         let is_moment = is_last || (row.step - self.first).is_multiple_of(self.stride);
         let mut measured: Option<PileMeasures> = None;
         for (quantity, found) in self.quantities.iter().zip(&mut self.found) {
-            if quantity.statistic == Statistic::AtEnd && !is_last {
+            if quantity.statistic.is_none() && !is_last {
                 continue;
             }
             let value = match quantity.column {
@@ -158,15 +154,8 @@ impl<'a> QuantityWatch<'a> {
 
     /// The quantities' values; what is not finite is none.
     pub(super) fn values(&self) -> Vec<f64> {
-        let of = |(quantity, found): (&BudgetQuantity, &Found)| match quantity.statistic {
-            Statistic::AtEnd => found.latest,
-            Statistic::Mean => found.sum / found.count as f64,
-            // A comparison with what is not a number is false, in whatever order.
-            Statistic::Min if found.sum.is_nan() => f64::NAN,
-            Statistic::Max if found.sum.is_nan() => f64::NAN,
-            Statistic::Min => found.least,
-            Statistic::Max => found.most,
-            Statistic::Total => found.sum,
+        let of = |(quantity, found): (&BudgetQuantity, &Found)| {
+            quantity.statistic.map_or(found.latest, |statistic| statistic(found))
         };
         self.quantities.iter().zip(&self.found).map(of).collect()
     }

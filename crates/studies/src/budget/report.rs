@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::ErrorBudget;
-use super::answer::{CauseRow, QuantityBudget};
 use super::causes::{Share, short};
+use super::rows::{CauseRow, QuantityBudget};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points};
 use crate::error::Result;
+use crate::harness::{ReportTable, write_sheet};
 use crate::output::write_file;
-use crate::report::{ReportTable, write_sheet};
 
 pub(super) const REPORT: &str = "report.md";
 
@@ -58,49 +58,28 @@ pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
     let columns = "quantity share cause changed starts adds low high unsolved cost note";
     let number =
         |value: f64| if value.is_finite() { format!("{value:.6e}") } else { String::new() };
-    let ends = |ends: Option<[f64; 3]>| {
-        ends.map_or_else(|| vec![String::new(); 3], |ends| ends.map(number).to_vec())
+    let row = |[share, cause, changed]: [&str; 3],
+               starts: usize,
+               ends: Option<[f64; 3]>,
+               rest: [String; 3]| {
+        let mut row = [&*budget.quantity, share, cause, changed].map(str::to_owned).to_vec();
+        row.push(starts.to_string());
+        row.extend(ends.map_or_else(<[String; 3]>::default, |ends| ends.map(number)));
+        row.extend(rest);
+        row
     };
-    let mut rows = Vec::new();
-    let mut add =
-        |share: &str, cause: &str, changed: &str, starts: usize, values, rest: [String; 3]| {
-            let mut row = vec![
-                budget.quantity.clone(),
-                share.into(),
-                cause.into(),
-                changed.into(),
-                starts.to_string(),
-            ];
-            row.extend(ends(values));
-            row.extend(rest);
-            rows.push(row);
-        };
-    let none = || [String::new(), "1.00".to_owned(), String::new()];
-    add("grains", "value itself", "", budget.starts, budget.value, none());
-    for row in &budget.causes {
-        let cost = row.cost.map_or_else(String::new, |cost| format!("{cost:.2}"));
-        let note = row.failure.clone().unwrap_or_default();
-        let unsolved = format!("{:.4}", row.unsolved);
-        add(
-            row.share.word(),
-            row.cause,
-            &row.changed,
-            row.starts,
-            row.adds,
-            [unsolved, cost, note],
-        );
-    }
-    if let Some(limit) = budget.limit_adds {
-        add(
-            "method",
-            "time step",
-            "Δt → 0",
-            budget.starts,
-            Some(limit),
-            [String::new(), String::new(), "extrapolated".into()],
-        );
-    }
-    ReportTable { name: "budget".into(), columns: columns.split(' ').collect(), rows }
+    let rest = ["", "1.00", ""].map(str::to_owned);
+    let mut rows = vec![row(["grains", "value itself", ""], budget.starts, budget.value, rest)];
+    rows.extend(budget.causes.iter().map(|it| {
+        let cost = it.cost.map_or_else(String::new, |cost| format!("{cost:.2}"));
+        let rest = [format!("{:.4}", it.unsolved), cost, it.failure.clone().unwrap_or_default()];
+        row([it.share.word(), it.cause, &it.changed], it.starts, it.adds, rest)
+    }));
+    rows.extend(budget.limit_adds.map(|limit| {
+        let rest = ["", "", "extrapolated"].map(str::to_owned);
+        row(["method", "time step", "Δt → 0"], budget.starts, Some(limit), rest)
+    }));
+    ReportTable::new("budget", columns, rows)
 }
 
 fn colour(share: Share) -> Rgb {

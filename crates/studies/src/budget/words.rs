@@ -1,10 +1,8 @@
-//! A budget in words: the paragraph that is read first.
+//! The answer of a budget in words: one template sentence for each thing that is known.
 
-use super::answer::{
-    CauseRow, Design, QuantityBudget, SMOOTH, Trust, halvings, is_inside, is_seen,
-};
 use super::causes::{Cause, DIVISORS, Share, short};
-use super::collect::{BudgetEnd, Runs};
+use super::collect::{BudgetEnd, OUTSIDE, Runs};
+use super::rows::{CauseRow, Design, QuantityBudget, SMOOTH, Trust, is_inside, is_seen};
 
 /// A number with as many decimals as half an interval has meaning for.
 fn rounded(number: f64, half: f64) -> String {
@@ -39,227 +37,180 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-pub(super) struct Words<'a> {
-    pub budget: &'a QuantityBudget,
-    pub runs: &'a Runs,
-    pub ended: BudgetEnd,
-    pub design: &'a Design<'a>,
-    pub number: usize,
+/// A cause as the subject of a sentence.
+fn subject(row: &CauseRow) -> String {
+    row.kind.subject().replace("{}", &row.changed)
 }
 
-impl Words<'_> {
-    pub(super) fn paragraph(&self) -> String {
-        let mut said = vec![self.of_value()];
-        said.extend(self.of_time_step());
-        let smallest = self.budget.smallest_step().map(|row| &row.changed);
-        let is_said = |row: &&CauseRow| {
-            row.kind == Cause::TimeStep && (row.adds.is_some() || Some(&row.changed) != smallest)
-        };
-        let others = self.budget.causes.iter().filter(|row| !is_said(row));
-        let (mut seen, mut unseen, mut missing) = (Vec::new(), Vec::new(), Vec::new());
-        for row in others {
-            match row.adds {
-                Some(ends) if self.is_told(ends) => {
-                    seen.push((ends[0].abs(), self.of_effect(row, ends)));
-                }
-                Some(ends) => unseen.push(self.of_unseen(row) + &self.at_most(ends)),
-                None => missing.push(row),
-            }
-        }
-        // The largest first.
-        seen.sort_by(|(one, _), (other, _)| other.total_cmp(one));
-        said.extend(seen.into_iter().map(|(_, words)| words));
-        if !unseen.is_empty() {
-            said.push(format!("No effect is seen of {}.", listed(&unseen)));
-        }
-        said.extend(self.of_missing(missing));
-        said.push(self.of_trust());
-        said.extend(self.of_cost());
-        said.push(self.of_end());
-        said.join(" ")
-    }
+/// The text with its first letter changed.
+fn with_first(text: &str, change: fn(&char) -> char) -> String {
+    let mut letters = text.chars();
+    letters.next().iter().map(change).chain(letters).collect()
+}
 
-    /// A number whose interval has this half width, which is no better known than what counts as none.
+/// The answer. `is_halved` is true if the halvings of the time step all came to a number.
+pub(super) fn paragraph(
+    budget: &QuantityBudget,
+    (runs, ended): (&Runs, BudgetEnd),
+    design: &Design<'_>,
+    is_halved: bool,
+) -> String {
+    let within = budget.with_unit(&short(budget.within));
+    let mut said = vec![budget.of_value(design.has_seeds)];
+    said.extend(budget.of_time_step(is_halved));
+    said.extend(budget.of_causes());
+    said.push(budget.of_trust(&within));
+    said.extend(budget.of_cost(&within, design.time_step_secs));
+    said.push(of_end(runs, ended, design));
+    said.join(" ")
+}
+
+/// Its sentences.
+impl QuantityBudget {
+    /// A number whose interval has this half width. It is known no better than the largest change that counts as none.
     fn number(&self, number: f64, half: f64) -> String {
-        rounded(number, half.max(SMOOTH * self.budget.within))
+        rounded(number, half.max(SMOOTH * self.within))
     }
 
-    /// True where an effect is seen and is more than what counts as none.
-    fn is_told(&self, [mean, low, high]: [f64; 3]) -> bool {
-        is_seen([mean, low, high]) && low.abs().max(high.abs()) > SMOOTH * self.budget.within
+    /// The largest size of an effect.
+    fn most([_, low, high]: [f64; 3]) -> f64 {
+        low.abs().max(high.abs())
     }
 
-    /// How large an effect may be that is not told; nothing where it is none at all.
-    fn at_most(&self, [_, low, high]: [f64; 3]) -> String {
-        let (most, least) = (low.abs().max(high.abs()), SMOOTH * self.budget.within);
-        let said =
-            |words: &str, number: String| format!(" ({words} {})", self.budget.with_unit(&number));
-        if most == 0.0 {
-            String::new()
-        } else if most <= least {
-            said("below", short(least))
-        } else {
-            said("at most", self.number(most, most))
+    /// True if an effect is significant and larger than the largest change that counts as none.
+    fn is_told(&self, ends: [f64; 3]) -> bool {
+        is_seen(ends) && Self::most(ends) > SMOOTH * self.within
+    }
+
+    /// The largest size of an effect that is not significant; nothing if the effect is exactly 0.
+    fn at_most(&self, ends: [f64; 3]) -> String {
+        let (most, least) = (Self::most(ends), SMOOTH * self.within);
+        match most {
+            0.0 => String::new(),
+            _ if most <= least => format!(" (below {})", self.with_unit(&short(least))),
+            _ => format!(" (at most {})", self.with_unit(&self.number(most, most))),
         }
     }
 
     fn with_interval(&self, mean: f64, half: f64) -> String {
-        let mean = self.number(mean, half);
-        if half.is_infinite() || half <= SMOOTH * self.budget.within {
-            return mean;
-        }
-        format!("{mean} ± {}", rounded(half, half))
+        let said = self.number(mean, half);
+        let is_narrow = half.is_infinite() || half <= SMOOTH * self.within;
+        self.with_unit(&if is_narrow { said } else { format!("{said} ± {}", rounded(half, half)) })
     }
 
-    fn of_value(&self) -> String {
-        let QuantityBudget { quantity, starts, spread, itself, .. } = self.budget;
-        let [mean, _, high] = self.budget.value.unwrap_or([f64::NAN; 3]);
-        let spread = spread.unwrap_or(0.0);
-        let value = self.budget.with_unit(&self.with_interval(mean, high - mean));
-        if self.design.has_seeds {
+    fn of_value(&self, has_seeds: bool) -> String {
+        let Self { quantity, starts, itself, .. } = self;
+        let [mean, _, high] = self.value.unwrap_or([f64::NAN; 3]);
+        let spread = self.spread.unwrap_or(0.0);
+        let (value, scatter) = (self.with_interval(mean, high - mean), rounded(spread, spread));
+        if has_seeds {
             let itself = itself.map_or(String::new(), |itself| {
                 format!(" The pile that was asked for has {}.", rounded(itself, spread))
             });
             return format!(
-                "{quantity} is {value} over {starts} piles that differ in their seed; single ones scatter by {}.{itself}",
-                rounded(spread, spread)
+                "{quantity} is {value} over {starts} piles that differ in their seed; single piles scatter by \
+                 {scatter}.{itself}"
             );
         }
-        if spread <= SMOOTH * self.budget.within {
+        if spread <= SMOOTH * self.within {
+            let value = self.with_unit(&self.number(mean, 0.0));
             return format!(
-                "{quantity} is {}, and all but the same where grains start 1e-9 d elsewhere.",
-                self.budget.with_unit(&self.number(mean, 0.0))
+                "{quantity} is {value}, and nearly the same if grains start 1e-9 d away."
             );
         }
         format!(
-            "{quantity} is {value} over {starts} starts that differ by 1e-9 d; single ones scatter by {}: the scene is \
-             chaotic.",
-            rounded(spread, spread)
+            "{quantity} is {value} over {starts} starts that differ by 1e-9 d; single starts scatter by {scatter}: the \
+             scene is chaotic."
         )
     }
 
-    fn of_time_step(&self) -> Option<String> {
-        let smallest = self.budget.smallest_step()?;
+    fn of_time_step(&self, is_halved: bool) -> Option<String> {
+        let smallest = self.smallest_step()?;
         let [mean, low, high] = smallest.adds?;
-        let value = self.budget.with_unit(&self.value_of(mean, high - mean));
-        let effect = self.effect([-mean, -high, -low]);
-        let mut said =
-            format!("The time step {effect}: at {} the value is {value}", smallest.changed);
-        said += &match self.budget.limit_adds {
+        let [base, ..] = self.value.unwrap_or([f64::NAN; 3]);
+        // The scatter of the mean value is not that of a paired difference, whose interval is given.
+        let value = self.with_unit(&self.number(base + mean, high - mean));
+        let end = match self.limit_adds {
             Some([mean, low, high]) if is_seen([mean, low, high]) => {
-                let [base, ..] = self.budget.value.unwrap_or([f64::NAN; 3]);
-                let value = self.with_interval(base + mean, high - mean);
-                format!(", at Δt → 0 {}.", self.budget.with_unit(&value))
+                format!(", at Δt → 0 {}.", self.with_interval(base + mean, high - mean))
             }
-            Some(_) => ".".into(),
-            None if halvings(self.runs, self.design, self.number).is_some() => {
+            None if is_halved => {
                 "; it does not settle as Δt falls, and no value at Δt → 0 is given.".into()
             }
-            None => ".".into(),
+            _ => ".".into(),
         };
-        Some(said)
+        let effect = self.effect([-mean, -high, -low]);
+        Some(format!("The time step {effect}: at {} the value is {value}{end}", smallest.changed))
     }
 
-    /// What the value is with something added to it. The mean value's own scatter is not that of a paired difference, which
-    /// is given.
-    fn value_of(&self, adds: f64, half: f64) -> String {
-        let [mean, ..] = self.budget.value.unwrap_or([f64::NAN; 3]);
-        self.number(mean + adds, half)
-    }
-
-    /// What is said of an effect, by what it adds.
     fn effect(&self, [mean, low, high]: [f64; 3]) -> String {
-        let told = |number: f64| {
-            let number = self.with_interval(number, high - mean);
-            self.budget.with_unit(&number)
-        };
         if !self.is_told([mean, low, high]) {
-            format!("has no effect that is seen{}", self.at_most([mean, low, high]))
-        } else if mean > 0.0 {
-            format!("adds {}", told(mean))
-        } else {
-            format!("takes {} away", told(-mean))
+            return format!("has no effect that is seen{}", self.at_most([mean, low, high]));
         }
+        let size = self.with_interval(mean.abs(), high - mean);
+        if mean > 0.0 { format!("adds {size}") } else { format!("takes {size} away") }
     }
 
-    fn of_effect(&self, row: &CauseRow, [mean, low, high]: [f64; 3]) -> String {
-        let effect = match row.kind {
-            // Left undone, it adds what doing it takes away.
-            Cause::Unsolved => self.effect([-mean, -high, -low]),
-            _ => self.effect([mean, low, high]),
-        };
-        match row.kind {
-            Cause::Unsolved => format!("What steps leave unsolved {effect}."),
-            Cause::Start => {
-                format!("Solves with {} in place of the scene's {effect}.", row.changed)
-            }
-            Cause::ContactLaw => {
-                format!("The contact law {} in place of this one {effect}.", row.changed)
-            }
-            Cause::FrictionModel => format!("Friction by {} {effect}.", row.changed),
-            Cause::NumberOfGrains => format!("A pile of {} {effect}.", row.changed),
-            Cause::Packing => format!("A pile {} {effect}.", row.changed),
-            Cause::RestitutionThreshold => format!("{} {effect}.", row.changed),
-            Cause::Cone | Cause::TouchTolerance | Cause::TimeStep => {
-                format!("The {} {effect}.", row.changed)
-            }
-        }
-    }
-
-    fn of_unseen(&self, row: &CauseRow) -> String {
-        match row.kind {
-            Cause::Unsolved => row.cause.to_owned(),
-            Cause::Start => row.changed.clone(),
-            Cause::ContactLaw => format!("the contact law {}", row.changed),
-            Cause::FrictionModel => format!("friction by {}", row.changed),
-            Cause::NumberOfGrains => format!("a pile of {}", row.changed),
-            Cause::Packing => format!("a pile {}", row.changed),
-            Cause::RestitutionThreshold => {
-                let mut letters = row.changed.chars();
-                let first = letters.next().map(|letter| letter.to_ascii_lowercase());
-                first.into_iter().chain(letters).collect()
-            }
-            Cause::Cone | Cause::TouchTolerance | Cause::TimeStep => {
-                format!("the {}", row.changed)
+    /// A sentence for each effect that is seen, the largest first; one for all others, and one for each reason for
+    /// which effects are missing.
+    fn of_causes(&self) -> Vec<String> {
+        let smallest = self.smallest_step().map(|row| &row.changed);
+        let (mut seen, mut unseen) = (Vec::new(), Vec::new());
+        let mut missing: Vec<(&str, Vec<String>)> = Vec::new();
+        for row in &self.causes {
+            let is_of_step = row.kind == Cause::TimeStep;
+            match row.adds {
+                // The sentence about the time step has them.
+                Some(_) if is_of_step => {}
+                None if is_of_step && Some(&row.changed) == smallest => {}
+                Some([mean, low, high]) if self.is_told([mean, low, high]) => {
+                    // The change is to solve better: unsolved steps add the opposite.
+                    let is_undone = row.kind == Cause::Unsolved;
+                    let ends = if is_undone { [-mean, -high, -low] } else { [mean, low, high] };
+                    let subject = with_first(&subject(row), char::to_ascii_uppercase);
+                    seen.push((mean.abs(), format!("{subject} {}.", self.effect(ends))));
+                }
+                Some(ends) => unseen.push(
+                    with_first(&subject(row), char::to_ascii_lowercase) + &self.at_most(ends),
+                ),
+                None => {
+                    let reason = row.failure.as_deref().unwrap_or_default();
+                    let name = if is_of_step {
+                        row.cause.into()
+                    } else {
+                        with_first(&subject(row), char::to_ascii_lowercase)
+                    };
+                    match missing.iter_mut().find(|(known, _)| *known == reason) {
+                        Some((_, names)) => names.push(name),
+                        None => missing.push((reason, vec![name])),
+                    }
+                }
             }
         }
-    }
-
-    /// What is not known, by its reason.
-    fn of_missing(&self, rows: Vec<&CauseRow>) -> Vec<String> {
-        let mut by_reason: Vec<(&str, Vec<String>)> = Vec::new();
-        for row in rows {
-            let reason = row.failure.as_deref().unwrap_or_default();
-            let name = if row.kind == Cause::TimeStep {
-                row.cause.to_owned()
-            } else {
-                self.of_unseen(row)
-            };
-            match by_reason.iter_mut().find(|(known, _)| *known == reason) {
-                Some((_, names)) => names.push(name),
-                None => by_reason.push((reason, vec![name])),
-            }
+        seen.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        let mut said: Vec<String> = seen.into_iter().map(|(_, sentence)| sentence).collect();
+        if !unseen.is_empty() {
+            said.push(format!("No effect is seen of {}.", listed(&unseen)));
         }
-        let said = |(reason, names): (&str, Vec<String>)| {
+        let of_reason = |(reason, names): (&str, Vec<String>)| {
             format!("Nothing is known of {}: {reason}.", listed(&names))
         };
-        by_reason.into_iter().map(said).collect()
+        said.extend(missing.into_iter().map(of_reason));
+        said
     }
 
-    fn of_trust(&self) -> String {
-        let within = self.budget.with_unit(&short(self.budget.within));
-        match self.budget.trust {
-            Trust::Yes => format!(
-                "So neither the method nor the choice of a law moves it by more than {within}."
-            ),
-            Trust::Mostly => {
-                let law = if self.budget.is_any_outside(Share::Law) {
-                    "the choice of a law does"
-                } else {
-                    "whether the choice of a law does is not known yet"
-                };
-                format!("So the method moves it by no more than {within}; {law}.")
+    fn of_trust(&self, within: &str) -> String {
+        let law = match self.is_any_outside(Share::Law) {
+            true => "the choice of a law moves it by more",
+            false => "whether the choice of a law does is not known yet",
+        };
+        match self.trust {
+            Trust::Yes => {
+                format!(
+                    "So neither the method nor the choice of a law moves it by more than {within}."
+                )
             }
+            Trust::Mostly => format!("So the method moves it by no more than {within}; {law}."),
             Trust::No => format!("So the method moves it by more than {within}."),
             Trust::NotKnownYet => {
                 format!("Whether the method moves it by more than {within} is not known yet.")
@@ -267,56 +218,48 @@ impl Words<'_> {
         }
     }
 
-    /// The cheapest of the settings that were tried whose part of the value is small enough.
-    fn of_cost(&self) -> Option<String> {
-        if self.budget.trust != Trust::No {
+    /// The cheapest time step that was tried and whose part of the value is small enough.
+    fn of_cost(&self, within: &str, time_step_secs: f64) -> Option<String> {
+        if self.trust != Trust::No || self.left_by_time_step.is_empty() {
             return None;
         }
-        let within = self.budget.within;
-        let tried = self.budget.left_by_time_step.iter().zip([1].into_iter().chain(DIVISORS));
-        let mut enough = tried.filter(|((_, left), _)| is_inside(*left, within));
-        let said = self.budget.with_unit(&short(within));
-        Some(match enough.next() {
-            _ if self.budget.left_by_time_step.is_empty() => return None,
-            Some((_, 1)) => return None,
-            Some(((cost, _), divisor)) => format!(
-                "For the time step's part to stay below {said}: Δt ≤ {} s, {} times the cost.",
-                short(self.design.time_step_secs / f64::from(divisor)),
+        let mut tried = self.left_by_time_step.iter().zip([1].into_iter().chain(DIVISORS));
+        match tried.find(|((_, left), _)| is_inside(*left, self.within)) {
+            Some((_, 1)) => None,
+            Some(((cost, _), divisor)) => Some(format!(
+                "For the time step's part to stay below {within}: Δt ≤ {} s, {} times the cost.",
+                short(time_step_secs / f64::from(divisor)),
                 rounded(*cost, 0.3)
-            ),
-            None => format!(
-                "No time step that was tried is known to be small enough for its part to stay below {said}."
-            ),
-        })
-    }
-
-    fn of_end(&self) -> String {
-        let percent = 100.0 * (1.0 - super::collect::OUTSIDE);
-        let all = format!("All intervals hold together in {percent:.0} % of budgets.");
-        match self.ended {
-            BudgetEnd::Within => all,
-            BudgetEnd::Stopped => format!("{all} More is on its way."),
-            BudgetEnd::Cost | BudgetEnd::Failed => {
-                let widest = (0..self.runs.all.len()).filter(|&series| self.runs.is_begun(series));
-                let widest = widest.max_by(|one, other| {
-                    self.runs.excess(*one).total_cmp(&self.runs.excess(*other))
-                });
-                let what = match widest {
-                    Some(series) if self.runs.excess(series) > 1.0 => {
-                        let name = series.checked_sub(1).map_or("the value itself".into(), |one| {
-                            let variant = &self.design.variants[one];
-                            format!("{} ({})", variant.cause.words(), variant.label)
-                        });
-                        format!(
-                            " the widest interval, of {name}, is {} times as wide as asked for",
-                            rounded(self.runs.excess(series), 0.3)
-                        )
-                    }
-                    _ => " not all could be run".into(),
-                };
-                format!("{all} The time was spent:{what}.")
-            }
+            )),
+            None => Some(format!(
+                "No time step that was tried is known to be small enough for its part to stay below {within}."
+            )),
         }
+    }
+}
+
+fn of_end(runs: &Runs, ended: BudgetEnd, design: &Design<'_>) -> String {
+    let percent = 100.0 * (1.0 - OUTSIDE);
+    let all = format!("All intervals hold together in {percent:.0} % of budgets.");
+    match ended {
+        BudgetEnd::Within => return all,
+        BudgetEnd::Stopped => return format!("{all} More runs follow."),
+        BudgetEnd::Cost | BudgetEnd::Failed => {}
+    }
+    let begun = (0..runs.all.len()).filter(|&series| runs.is_begun(series));
+    let widest = begun.map(|series| (runs.excess(series), series));
+    match widest.max_by(|(one, _), (other, _)| one.total_cmp(other)) {
+        Some((excess, series)) if excess > 1.0 => {
+            let name = series.checked_sub(1).map_or("the value itself".into(), |one| {
+                let variant = &design.variants[one];
+                format!("{} ({})", variant.cause.words(), variant.label)
+            });
+            let times = rounded(excess, 0.3);
+            format!(
+                "{all} The time was spent: the widest interval, of {name}, is {times} times as wide as asked for."
+            )
+        }
+        _ => format!("{all} The time was spent: not all could be run."),
     }
 }
 

@@ -2,11 +2,11 @@
 //! Fig. 4 as thin lines; and what is asked of them state by state, with how often each test would say so by chance.
 
 use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
-use super::studies::{Rows, log_step};
+use super::studies::{ensemble, groups, log_step};
 use super::{Figure, StudyRunner};
-use crate::RunResult;
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet, points};
 use crate::error::Result;
+use crate::harness::{MeasuredCase, Measurements};
 use crate::scene::NewPile;
 use crate::statistics::{Mean, mean, p_of_either, p_value, slope};
 
@@ -40,19 +40,20 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
     let mut states = Vec::new();
     for (cone, study) in CONES {
         let all = studies.rows(study)?;
-        let ensemble = all.ensemble();
+        let ensemble = ensemble(&all);
         let y = Axis::linear("slump", 0.0, 0.7);
         let title = format!("Fig. 5a: slump after 1 s, {cone} cone");
-        charts.push(chart(&all, &title, time_steps(), y, |result| result.slump));
+        charts.push(chart(&all, &title, time_steps(), y, "slump"));
         claims.extend(SLUMP_CLAIMS.map(|(bond, said, test, border)| {
-            let states = ensemble.of_bond(bond).groups(log_step, |result| result.slump);
+            let of_bond = ensemble.with("bond", bond);
+            let states = groups(&of_bond, log_step, |run| run.reading("slump"));
             let (measured, verdict) = test(&states);
             let holds = |states: &[Alike]| test(states).1 == Verdict::Holds;
             Claim::new(format!("Fig. 5a, {cone} cone: {said}"), measured, verdict)
                 .shuffled(&states, |log_step| border * log_step, holds)
                 .hanging_on(CHOICES)
         }));
-        states.push(ensemble.seeds().len());
+        states.push(ensemble.values("seed").len());
     }
     let caption = vec![
         format!(
@@ -71,19 +72,19 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
 /// overlaps are large and contacts are lost.
 pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let all = studies.rows("pile")?;
-    let rows = all.ensemble();
-    let overlap = |result: &RunResult| result.tally.mean_overlap;
+    let rows = ensemble(&all);
     let y = Axis::log("mean overlap δ/d", 1e-5, 0.2);
-    let of_exponent = chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, overlap);
+    let of_exponent =
+        chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, "mean_overlap");
     let x = Axis::linear("Δt (s)", 0.0, 5.5e-3);
     let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
-    let of_paper = chart(&all, "On the paper's axes", x, y, overlap);
+    let of_paper = chart(&all, "On the paper's axes", x, y, "mean_overlap");
     let caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
-        rows.seeds().len()
+        rows.values("seed").len()
     )];
     let sheet = Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption };
-    let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
+    let cohesive = rows.such_that(|run| run.at("bond") > 0.0);
     let claims = vec![grows(&cohesive), stays_below(&rows), reverses(&cohesive), loses(&cohesive)];
     Ok(Figure { name: "fig5b", sheet, claims, table: None })
 }
@@ -93,21 +94,19 @@ fn time_steps() -> Axis {
 }
 
 /// A number of all runs against Δt, a curve a Bond.
-fn chart(rows: &Rows<'_>, title: &str, x: Axis, y: Axis, number: fn(&RunResult) -> f64) -> Chart {
+fn chart(rows: &Measurements<'_>, title: &str, x: Axis, y: Axis, reading: &str) -> Chart {
     let mut chart = Chart::new(title, x, y);
-    let bonds = rows.bonds();
+    let bonds = rows.values("bond");
     for (index, &bond) in bonds.iter().enumerate() {
-        let of_bond = rows.of_bond(bond);
-        let (single, ensemble) = (of_bond.of_seed(NewPile::default().seed), of_bond.ensemble());
+        let of_bond = rows.with("bond", bond);
+        let single = of_bond.with("seed", NewPile::default().seed as f64);
+        let ensemble = ensemble(&of_bond);
         let colour = PALETTE[index % PALETTE.len()];
-        let steps = of_bond.steps();
-        let shown = steps
-            .iter()
-            .filter_map(|&step| Some((step, *single.of_step(step).results(number).first()?)));
+        let shown = single.rising(|run| (run.at("dt"), run.reading(reading)));
         let name = format!("Bond {bond}, single state");
         chart.layers.push(Layer::quiet(name, points(shown), colour, Look::Line(1)));
-        let means = steps.iter().map(|&step| {
-            let mean = mean(&ensemble.of_step(step).results(number));
+        let means = of_bond.values("dt").into_iter().map(|step| {
+            let mean = mean(&ensemble.with("dt", step).readings(reading));
             Point { x: step, y: mean.mean, interval: Some((mean.low.max(1e-6), mean.high)) }
         });
         let name = format!("Bond {bond}");
@@ -173,8 +172,9 @@ fn minimum(states: &[Alike]) -> (String, Verdict) {
     (measured, Verdict::of(p, p_not))
 }
 
-fn grows(cohesive: &Rows<'_>) -> Claim {
-    let states = cohesive.groups(log_step, |result| result.tally.mean_overlap.max(1e-12).log10());
+fn grows(cohesive: &Measurements<'_>) -> Claim {
+    let log_overlap = |run: &MeasuredCase| run.reading("mean_overlap").max(1e-12).log10();
+    let states = groups(cohesive, log_step, log_overlap);
     let exponent = slopes(&states);
     let Mean { mean, low, high, .. } = exponent;
     Claim::new(
@@ -186,8 +186,8 @@ fn grows(cohesive: &Rows<'_>) -> Claim {
     .hanging_on("the states; no choice of cone or solver is known that undoes it")
 }
 
-fn stays_below(rows: &Rows<'_>) -> Claim {
-    let largest = rows.results(|result| result.tally.mean_overlap).into_iter().fold(0.0, f64::max);
+fn stays_below(rows: &Measurements<'_>) -> Claim {
+    let largest = rows.readings("mean_overlap").into_iter().fold(0.0, f64::max);
     Claim::new(
         format!("Fig. 5b: it stays below {END_OF_AXIS} d, where the paper's axis ends"),
         format!("largest mean overlap of a run {largest:.3} d"),
@@ -216,9 +216,9 @@ fn turn(slumps: &[Alike], overlaps: &[Alike]) -> Mean {
 }
 
 /// That slump begins to rise with Δt where overlaps are large.
-fn reverses(cohesive: &Rows<'_>) -> Claim {
-    let slumps = cohesive.groups(log_step, |result| result.slump);
-    let overlaps = cohesive.groups(log_step, |result| result.tally.mean_overlap);
+fn reverses(cohesive: &Measurements<'_>) -> Claim {
+    let slumps = groups(cohesive, log_step, |run| run.reading("slump"));
+    let overlaps = groups(cohesive, log_step, |run| run.reading("mean_overlap"));
     let turning = turn(&slumps, &overlaps);
     let measured = format!(
         "slope of slump a decade of Δt, above {LARGE_OVERLAP} d less below, at the same state and Bond: {}, {} pairs; \
@@ -239,12 +239,12 @@ fn reverses(cohesive: &Rows<'_>) -> Claim {
 }
 
 /// That piles have fewer contacts at larger Δt where they are strong, and that those with fewer slump more.
-fn loses(cohesive: &Rows<'_>) -> Claim {
-    let strong = cohesive.bonds().last().copied();
-    let strong = cohesive.such_that(|config| config.parameters.bond == strong);
-    let contacts = strong.groups(log_step, |result| result.tally.mean_contacts);
+fn loses(cohesive: &Measurements<'_>) -> Claim {
+    let strongest = cohesive.values("bond").last().copied().unwrap_or(f64::NAN);
+    let strong = &cohesive.with("bond", strongest);
+    let contacts = groups(strong, log_step, |run| run.reading("mean_contacts"));
     let falls = slopes(&contacts);
-    let slumps = strong.groups(log_step, |result| result.slump);
+    let slumps = groups(strong, log_step, |run| run.reading("slump"));
     let with = |slumps: &[Alike]| {
         let of_state = |(slumps, contacts): (&Alike, &Alike)| {
             let pairs: Vec<_> = contacts.iter().zip(slumps).map(|(c, s)| (c.1, s.1)).collect();

@@ -3,10 +3,11 @@
 use rand::{RngExt, SeedableRng};
 
 use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
+use super::studies::{ensemble, groups};
 use super::{Figure, StudyRunner};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Sheet, points};
-use crate::config::Config;
 use crate::error::Result;
+use crate::harness::MeasuredCase;
 use crate::statistics::{mean, p_of_either, p_value, slope, turning_point};
 
 const RESAMPLINGS: usize = 400;
@@ -17,9 +18,9 @@ const FEWER_RESAMPLINGS: usize = 20;
 const DIAMETER: f64 = 5e-3;
 const GRAVITY: f64 = 9.8;
 
-pub(super) fn cohesive_time(config: &Config) -> f64 {
-    config.parameters.bond.unwrap_or(0.0) * config.parameters.time_step_secs.unwrap_or(0.0)
-        / unit_secs()
+/// log₁₀ of the cohesive time of a run.
+pub(super) fn log_time(run: &MeasuredCase) -> f64 {
+    (run.at("bond") * run.at("dt") / unit_secs()).log10()
 }
 
 /// √(d/g) of the piles, s.
@@ -28,8 +29,8 @@ pub(super) fn unit_secs() -> f64 {
 }
 
 pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
-    let cohesive = studies.rows("pile")?.such_that(|config| config.parameters.bond > Some(0.0));
-    let rows = cohesive.ensemble();
+    let cohesive = studies.rows("pile")?.such_that(|run| run.at("bond") > 0.0);
+    let rows = ensemble(&cohesive);
     let mut chart = Chart::new(
         "Fig. 6: slump against cohesive time",
         Axis::log("Bond·Δt/√(d/g)", 0.06, 32.0),
@@ -37,10 +38,10 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     );
     let one = points([(1.0, 0.0), (1.0, 0.6)]);
     chart.layers.push(Layer::curve("the paper's guess", one, INK, Look::Dashes(2)));
-    for (index, bond) in rows.bonds().into_iter().enumerate() {
-        let of_bond = rows.of_bond(bond);
-        let means = of_bond.steps().into_iter().map(|step| {
-            let mean = mean(&of_bond.of_step(step).slumps());
+    for (index, bond) in rows.values("bond").into_iter().enumerate() {
+        let of_bond = rows.with("bond", bond);
+        let means = of_bond.values("dt").into_iter().map(|step| {
+            let mean = mean(&of_bond.with("dt", step).readings("slump"));
             let interval = Some((mean.low.max(0.0), mean.high));
             Point { x: bond * step / unit_secs(), y: mean.mean, interval }
         });
@@ -48,9 +49,8 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         let curve = Layer::curve(name, means.collect(), PALETTE[index + 1], Look::LineAndDots);
         chart.layers.push(curve);
     }
-    let log_time = |config: &Config| cohesive_time(config).log10();
-    let groups = rows.groups(log_time, |result| result.slump);
-    let count = rows.seeds().len();
+    let groups = groups(&rows, log_time, |run| run.reading("slump"));
+    let count = rows.values("seed").len();
     let turn = turning(&joined(&groups, count), RESAMPLINGS);
     let Turn { place, low, high } = turn;
     let mut sheet = Sheet::of(chart);

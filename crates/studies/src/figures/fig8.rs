@@ -2,13 +2,10 @@
 //! distances, and over Δt and stopping tolerance.
 
 use super::claims::{Claim, Verdict};
-use super::studies::{Rows, changes};
 use super::{Figure, StudyRunner};
-use crate::RunResult;
 use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, PALETTE, Point, Rgb, Sheet, points};
-use crate::config::Config;
 use crate::error::Result;
-use crate::report::ReportTable;
+use crate::harness::{MeasuredCase, Measurements, ReportTable};
 use crate::scene::cradle;
 use crate::statistics;
 
@@ -35,17 +32,19 @@ const PAPER: [(f64, bool); 14] = [
 /// Below this step the outcome is no matter of phase, s.
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
-fn is_open(result: &RunResult) -> bool {
-    result.first_gap > OPEN_GAP
+fn is_open(run: &MeasuredCase) -> bool {
+    run.reading("first_gap") > OPEN_GAP
+}
+
+/// How many bonds are open, of how many.
+fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
+    [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
 
 /// How many of the paper's outcomes are those of runs, one a Δt.
-fn agreed(rows: &Rows<'_>) -> usize {
+fn agreed(rows: &Measurements<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
-        let is_it = |(config, result): &(&Config, &RunResult)| {
-            config.parameters.time_step_secs == Some(step) && is_open(result) == open
-        };
-        rows.0.iter().any(is_it)
+        rows.0.iter().any(|run| run.at("dt") == step && is_open(run) == open)
     };
     PAPER.iter().filter(agrees).count()
 }
@@ -53,8 +52,7 @@ fn agreed(rows: &Rows<'_>) -> usize {
 /// What Fig. 8 hangs on: the paper's pattern with one choice changed at a time.
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
-    let first = rows.0[0].0;
-    let all = rows.parts(|config| changes(config, first));
+    let all = studies.choices("cradle-choices")?;
     let mut y = Axis::linear("", -(all.len() as f64), 1.0);
     y.ticks = (0..).zip(&all).map(|(row, (name, _))| (-f64::from(row), name.clone())).collect();
     let x = Axis::log("Δt (s)", 8e-5, 1.3e-2);
@@ -62,10 +60,9 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     for (name, open, colour, look) in
         [("open", true, PALETTE[6], Look::Dots(7)), ("closed", false, PALETTE[1], Look::Rings(7))]
     {
-        let of_row = |(row, (_, rows)): (i32, &(String, Rows<'_>))| {
-            let here = rows.0.iter().filter(|(_, result)| is_open(result) == open);
-            let step = |(config, _): &(&Config, _)| config.parameters.time_step_secs.unwrap_or(0.0);
-            here.map(|run| (step(run), -f64::from(row))).collect::<Vec<_>>()
+        let of_row = |(row, (_, rows)): (i32, &(String, Measurements<'_>))| {
+            let here = rows.such_that(|run| is_open(run) == open);
+            here.points(|run| (run.at("dt"), -f64::from(row)))
         };
         let places = (0..).zip(&all).flat_map(of_row);
         chart.layers.push(Layer::curve(name, points(places), colour, look));
@@ -86,20 +83,17 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
         "nothing is drawn at random: a run a choice and time step; fig8-share has many starts",
     )
     .hanging_on("the choices that were tried, one at a time");
-    let name = "cradle-choices-outcomes".to_owned();
-    let table = ReportTable { name, columns: vec!["choice", "of_14_outcomes"], rows: agreed };
+    let table = ReportTable::new("cradle-choices-outcomes", "choice of_14_outcomes", agreed);
     let claims = vec![pattern_comes_out(&all[0].1), shock_opens(&rows), claim];
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }
 
 /// That a start distance at random has the paper's pattern, at the loosest stop of the study.
-fn pattern_is_usual(rows: &Rows<'_>) -> Claim {
-    let loosest = rows.tolerances().pop();
-    let rows = rows.such_that(|config| config.solver.tolerance == loosest);
-    let starts = rows.values(|config| config.source.start);
-    let whole = |start: &&f64| {
-        agreed(&rows.such_that(|config| config.source.start == Some(**start))) == PAPER.len()
-    };
+fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
+    let loosest = rows.values("tolerance").pop().unwrap_or(f64::NAN);
+    let rows = rows.with("tolerance", loosest);
+    let starts = rows.values("start");
+    let whole = |start: &&f64| agreed(&rows.with("start", **start)) == PAPER.len();
     let whole = starts.iter().filter(whole).count();
     let (share, low, high) = statistics::share(whole, starts.len());
     let [share, low, high] = [share, low, high].map(|share| 100.0 * share);
@@ -116,7 +110,7 @@ fn pattern_is_usual(rows: &Rows<'_>) -> Claim {
     .hanging_on("start distances spread evenly from 6 to 8.5 d; the stop of 2.2·10⁻³ m/s, ρ = 0.2, the cold start")
 }
 
-fn pattern_comes_out(rows: &Rows<'_>) -> Claim {
+fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     let agreed = agreed(rows);
     Claim::new(
         "§4: open at Δt = 1…6·10⁻⁴ s, closed at 7·10⁻⁴…3·10⁻³, open at 4·10⁻³, closed at 5·10⁻³, open at 6·10⁻³ and 10⁻²",
@@ -131,11 +125,10 @@ fn pattern_comes_out(rows: &Rows<'_>) -> Claim {
 }
 
 /// That the shock opens bonds at small Δt, at the tightest stop.
-fn shock_opens(rows: &Rows<'_>) -> Claim {
-    let tolerance = rows.tolerances()[0];
-    let tight = rows.of_tolerance(tolerance);
-    let small = tight.such_that(|config| config.parameters.time_step_secs < Some(PHASE_SECS));
-    let opened = small.0.iter().filter(|(_, result)| is_open(result)).count();
+fn shock_opens(rows: &Measurements<'_>) -> Claim {
+    let tolerance = rows.values("tolerance")[0];
+    let tight = rows.with("tolerance", tolerance);
+    let [opened, _] = open_of(&tight.such_that(|run| run.at("dt") < PHASE_SECS));
     Claim::new(
         "§4 (eq. 15): at small Δt the shock opens the bond",
         format!(
@@ -154,18 +147,17 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
         Axis::log("Δt (s)", 8e-5, 1.3e-2),
         Axis::linear("share of start distances", -0.02, 1.02),
     );
-    let starts = rows.values(|config| config.source.start);
+    let starts = rows.values("start");
     let mut at_large_steps = Vec::new();
-    let tolerances = rows.tolerances();
+    let tolerances = rows.values("tolerance");
     for (&tolerance, colour) in tolerances.iter().rev().zip([PALETTE[6], PALETTE[2], PALETTE[1]]) {
-        let rows = rows.of_tolerance(tolerance);
+        let rows = rows.with("tolerance", tolerance);
         let share = |step: f64| {
-            let of_step = rows.of_step(step);
-            let hits = of_step.0.iter().filter(|(_, result)| is_open(result)).count();
-            let (share, low, high) = statistics::share(hits, of_step.0.len());
+            let [hits, count] = open_of(&rows.with("dt", step));
+            let (share, low, high) = statistics::share(hits, count);
             Point { x: step, y: share, interval: Some((low, high)) }
         };
-        let shares: Vec<Point> = rows.steps().into_iter().map(share).collect();
+        let shares: Vec<Point> = rows.values("dt").into_iter().map(share).collect();
         let large: Vec<Point> =
             shares.iter().copied().filter(|point| point.x > PHASE_SECS).collect();
         at_large_steps.push((tolerance, large));
@@ -219,16 +211,16 @@ pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
 /// The cradle's end over time step and stopping tolerance.
 pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-map")?;
-    let (steps, tolerances) = (rows.steps(), rows.tolerances());
+    let (steps, tolerances) = (rows.values("dt"), rows.values("tolerance"));
     let (step_edges, tolerance_edges) = (log_edges(&steps), log_edges(&tolerances));
     let mut cells = Vec::new();
     for (&step, &step_edges) in steps.iter().zip(&step_edges) {
         for (&tolerance, &edges) in tolerances.iter().zip(&tolerance_edges) {
-            let here = rows.of_step(step).of_tolerance(tolerance);
-            let of_run = |(_, result): &(&Config, &RunResult)| MapCell {
+            let here = rows.with("dt", step).with("tolerance", tolerance);
+            let of_run = |run: &&MeasuredCase| MapCell {
                 x: (step, step_edges),
                 y: (tolerance, edges),
-                value: f64::from(u8::from(is_open(result))),
+                value: f64::from(u8::from(is_open(run))),
             };
             cells.extend(here.0.iter().map(of_run));
         }
@@ -240,12 +232,11 @@ pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
         Axis::log("Δt (s)", x.0, x.1),
         Axis::log("stopping tolerance Σ|ΔP|/m (m/s)", y.0, y.1),
     );
-    let small = rows.such_that(|config| config.parameters.time_step_secs < Some(3e-3));
+    let small = rows.such_that(|run| run.at("dt") < 3e-3);
     let of_small = |low: f64, high: f64| {
-        let picked =
-            small.such_that(|c| c.solver.tolerance.is_some_and(|x| (low..high).contains(&x)));
-        let open = picked.0.iter().filter(|(_, result)| is_open(result)).count();
-        open as f64 / picked.0.len().max(1) as f64
+        let [open, count] =
+            open_of(&small.such_that(|run| (low..high).contains(&run.at("tolerance"))));
+        open as f64 / count.max(1) as f64
     };
     let (tight, loose) = (of_small(0.0, 1e-4), of_small(1e-3, 1.0));
     chart.layers.push(Layer::Cells { name: "open".into(), cells, colour });

@@ -17,7 +17,7 @@ use self::claims::Claim;
 use self::studies::StudyRunner;
 use crate::chart::Sheet;
 use crate::error::Result;
-use crate::report::ReportTable;
+use crate::harness::ReportTable;
 
 struct Figure {
     pub name: &'static str,

@@ -3,11 +3,11 @@
 use std::ops::RangeInclusive;
 
 use super::claims::{Alike, Claim, Verdict};
-use super::fig6::{cohesive_time, unit_secs};
+use super::fig6::{log_time, unit_secs};
 use super::fig8::log_edges;
+use super::studies::groups;
 use super::{Figure, StudyRunner};
 use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, points};
-use crate::config::Config;
 use crate::error::Result;
 use crate::statistics::{Mean, mean, p_value};
 
@@ -30,7 +30,7 @@ fn colour(slump: f64) -> Rgb {
 
 pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("pile-map")?;
-    let (bonds, steps) = (rows.bonds(), rows.steps());
+    let (bonds, steps) = (rows.values("bond"), rows.values("dt"));
     let half = 0.5 * (bonds[1] - bonds[0]);
     let edges = log_edges(&steps);
     let mut cells = Vec::new();
@@ -38,10 +38,10 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     for (index, &bond) in bonds.iter().enumerate() {
         // Counted from one end, so that neighbours share their edges to the last bit.
         let edge = |number: usize| bonds[0] + half * (2.0 * number as f64 - 1.0);
+        let of_bond = rows.with("bond", bond);
         let mut best = (f64::INFINITY, 0.0);
         for (step, edges) in steps.iter().zip(&edges) {
-            let cell = rows.of_bond(bond).of_step(*step);
-            let slump = mean(&cell.slumps()).mean;
+            let slump = mean(&of_bond.with("dt", *step).readings("slump")).mean;
             cells.push(MapCell {
                 x: (bond, [edge(index), edge(index + 1)]),
                 y: (*step, *edges),
@@ -72,16 +72,15 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         Look::Dots(6),
     ));
 
-    let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
-    let log_time = |config: &Config| cohesive_time(config).log10();
-    let groups = cohesive.groups(log_time, |result| result.slump);
-    let claim = claim(&groups, rows.seeds().len());
+    let cohesive = rows.such_that(|run| run.at("bond") > 0.0);
+    let groups = groups(&cohesive, log_time, |run| run.reading("slump"));
+    let claim = claim(&groups, rows.values("seed").len());
     let sheet = Sheet {
         size: (1200, 818),
         charts: vec![chart, scale()],
         caption: vec![format!(
             "Means over {} initial states; red: the Δt of the lowest slump at each Bond number.",
-            rows.seeds().len()
+            rows.values("seed").len()
         )],
     };
     Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
+use super::studies::FinishedStudy;
 use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
-use crate::machine::Machine;
-use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
-use crate::report::write_sheet;
+use crate::harness::{Bench, Effort};
+use crate::output::{note_line, print_line, print_text};
 use crate::solver::worst;
 
 /// The pictures of grains, which are drawn together.
@@ -40,9 +40,10 @@ pub fn reproduce(
         return Err(Error::value("figure", unknown, format!("one of {}", known.join(", "))));
     }
     let wanted = |name: &str| names.iter().any(|asked| asked == name || asked == ALL);
-    check_writable("out", folder)?;
-    let mut studies = StudyRunner::new(folder.join("studies"), quick);
-    let mut report = opening(quick);
+    let effort = Effort::new(quick);
+    let bench = Bench::new(folder, effort, version)?;
+    let mut studies = StudyRunner::new(folder.join("studies"), effort);
+    let mut report = opening(effort);
     for info in FIGURES.iter().filter(|figure| wanted(figure.name)) {
         let begun = Instant::now();
         for study in info.studies {
@@ -51,12 +52,8 @@ pub fn reproduce(
         let mut figure = (info.make)(&studies)?;
         studies.qualify(info.studies, &mut figure.claims);
         figure.sheet.caption.extend(studies.note(info.studies));
-        let quick = if quick { " --quick" } else { "" };
-        let command = format!("slump reproduce {} --out figures{quick}", info.name);
-        write_sheet(folder, figure.name, &figure.sheet, &command)?;
-        if let Some(table) = &figure.table {
-            write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
-        }
+        let command = format!("slump reproduce {} --out figures{}", info.name, effort.option());
+        bench.write((figure.name, &figure.sheet), &figure.table, &command)?;
         note_line(format_args!("{}: {:.0} s", info.name, begun.elapsed().as_secs_f64()));
         report.push_str(&section(info, &figure));
     }
@@ -70,18 +67,14 @@ pub fn reproduce(
         report,
         "\nMade in {:.0} s, studies that were there before not counted: {}.",
         started.elapsed().as_secs_f64(),
-        Machine::this(version)?.words()
+        bench.machine.words()
     );
-    let path = folder.join("report.md");
-    write_file(&path, report.as_bytes())?;
-    remove_drafts(folder)?;
-    print_line(path.display());
-    Ok(())
+    bench.finish("report.md", &report)
 }
 
-fn opening(quick: bool) -> String {
+fn opening(effort: Effort) -> String {
     let mut text = "# What the paper says, and what was measured\n\n".to_owned();
-    if quick {
+    if effort == Effort::Quick {
         text.push_str("Quick pass: coarser, with fewer initial states than the full one.\n\n");
     }
     text.push_str(
@@ -126,7 +119,7 @@ fn closing(studies: &StudyRunner) -> String {
         "\n## Studies\n\n| study | runs | core seconds | steps not solved as asked | largest residual \
              | not finite |\n|---|---|---|---|---|---|\n",
     );
-    for (name, (_, table)) in &studies.finished {
+    for (name, FinishedStudy { table, .. }) in &studies.finished {
         let results = || table.rows.iter().map(|(.., result)| result);
         let steps: u64 = results().map(|result| result.tally.steps).sum();
         let unsolved: u64 = results().map(|result| result.tally.unconverged_steps).sum();

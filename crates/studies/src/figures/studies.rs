@@ -8,8 +8,9 @@ use serde_json::Value;
 use super::claims::{Alike, Claim, Verdict};
 use crate::config::Config;
 use crate::error::{Error, Result};
-use crate::results::alarms_of;
+use crate::harness::{Effort, MeasuredCase, Measurements, RunReadings, named};
 use crate::scene::NewPile;
+use crate::sweep::alarms_of;
 use crate::{PlannedRun, RunResult, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
 macro_rules! shipped {
@@ -22,16 +23,74 @@ const STUDIES: &[(&str, &str)] = shipped![
     "pile" "pile-compressive" "cradle-courses" "cradle-choices" "cradle-share" "cradle-map" "pile-map"
 ];
 
+/// A study whose runs are all there.
+pub(super) struct FinishedStudy {
+    study: Study,
+    pub table: RunsTable,
+    /// The runs that have a finite end: others have no numbers.
+    ended: Vec<MeasuredCase>,
+}
+
+impl FinishedStudy {
+    fn new(study: Study, table: RunsTable) -> Self {
+        let ended = table.rows.iter().filter(|(.., result)| result.status == Status::Done);
+        let ended = ended.map(|(_, config, result)| measured(config, result)).collect();
+        Self { study, table, ended }
+    }
+}
+
+/// The numbers of a run by name.
+fn measured(config: &Config, result: &RunResult) -> MeasuredCase {
+    let Config { source, parameters, solver, .. } = config;
+    let at = [
+        ("bond", parameters.bond),
+        ("dt", parameters.time_step_secs),
+        ("tolerance", solver.tolerance),
+        ("start", source.start),
+        ("seed", source.seed.map(|seed| seed as f64)),
+    ];
+    let at = at.into_iter().filter_map(|(name, number)| Some((name, number?))).collect();
+    let readings = named([
+        ("slump", result.slump),
+        ("mean_overlap", result.tally.mean_overlap),
+        ("mean_contacts", result.tally.mean_contacts),
+        ("first_gap", result.first_gap),
+    ]);
+    MeasuredCase { at, run: RunReadings { readings, ..RunReadings::default() }, wall_secs: 0.0 }
+}
+
+/// The runs whose initial states were not chosen for the pictures that they make.
+pub(super) fn ensemble<'a>(runs: &Measurements<'a>) -> Measurements<'a> {
+    runs.such_that(|run| run.at("seed") != NewPile::default().seed as f64)
+}
+
+/// Two numbers of each run, rising by the first: a group for each state and Bond, the states one after the other.
+pub(super) fn groups(
+    runs: &Measurements<'_>,
+    x: impl Fn(&MeasuredCase) -> f64,
+    y: impl Fn(&MeasuredCase) -> f64,
+) -> Vec<Alike> {
+    let bonds = runs.values("bond");
+    let states = runs.by_seed(|state| {
+        let of_bond = |&bond: &f64| state.with("bond", bond).rising(|run| (x(run), y(run)));
+        bonds.iter().map(of_bond).collect::<Vec<_>>()
+    });
+    states.concat()
+}
+
+pub(super) fn log_step(run: &MeasuredCase) -> f64 {
+    run.at("dt").log10()
+}
+
 pub(super) struct StudyRunner {
     folder: PathBuf,
-    /// True if studies run their quick pass.
-    pub quick: bool,
-    pub finished: BTreeMap<&'static str, (Study, RunsTable)>,
+    effort: Effort,
+    pub finished: BTreeMap<&'static str, FinishedStudy>,
 }
 
 impl StudyRunner {
-    pub(super) fn new(folder: PathBuf, quick: bool) -> Self {
-        Self { folder, quick, finished: BTreeMap::new() }
+    pub(super) fn new(folder: PathBuf, effort: Effort) -> Self {
+        Self { folder, effort, finished: BTreeMap::new() }
     }
 
     pub(super) fn run(&mut self, wanted: &str) -> Result<()> {
@@ -42,32 +101,50 @@ impl StudyRunner {
             return Ok(());
         }
         let path = format!("{name}.toml");
-        let study = Study::parse(text, path.as_ref(), self.quick)?;
+        let study = Study::parse(text, path.as_ref(), self.effort == Effort::Quick)?;
         // Results of an older program's study are of no use here: they are made anew.
         let states = Some(self.folder.join("states"));
         let options = SweepOptions { redo: true, states, shard: None };
         let done = sweep(&study, &self.study_folder(name), &options)?;
         let table = done.ok_or_else(|| Error::value("study", name, "run as a whole"))?;
-        self.finished.insert(name, (study, table));
+        self.finished.insert(name, FinishedStudy::new(study, table));
         Ok(())
     }
 
-    /// The rows of a study that was run, but for runs without a finite end: they have no numbers.
-    pub(super) fn rows(&self, name: &str) -> Result<Rows<'_>> {
+    /// The runs of a study that have a finite end.
+    pub(super) fn rows(&self, name: &str) -> Result<Measurements<'_>> {
         let found = self.finished.get(name);
-        let (_, table) =
-            found.ok_or_else(|| Error::value("study", name, "run before its figures"))?;
-        let ended = table.rows.iter().filter(|(.., result)| result.status == Status::Done);
-        let rows: Vec<_> = ended.map(|(_, config, result)| (config, result)).collect();
-        if rows.is_empty() {
+        let found = found.ok_or_else(|| Error::value("study", name, "run before its figures"))?;
+        if found.ended.is_empty() {
             return Err(Error::value(name, "without a run that ended", "run to some finite end"));
         }
-        Ok(Rows(rows))
+        Ok(Measurements(found.ended.iter().collect()))
+    }
+
+    /// The runs of [`StudyRunner::rows`] by the settings in which they differ from the first of them, in their order.
+    pub(super) fn choices(&self, name: &str) -> Result<Vec<(String, Measurements<'_>)>> {
+        let rows = self.rows(name)?;
+        let table = self.finished[name].table.rows.iter();
+        let configs: Vec<&Config> = table
+            .filter(|(.., result)| result.status == Status::Done)
+            .map(|(_, config, _)| config)
+            .collect();
+        let mut parts: Vec<(String, Measurements<'_>)> = Vec::new();
+        for (&config, run) in configs.iter().zip(rows.0) {
+            let words = changes(config, configs[0]);
+            match parts.iter_mut().find(|(known, _)| *known == words) {
+                Some((_, part)) => part.0.push(run),
+                None => parts.push((words, Measurements(vec![run]))),
+            }
+        }
+        Ok(parts)
     }
 
     /// The series of a study's runs, each with its config: its file as text.
     pub(super) fn series(&self, name: &str) -> Result<Vec<(Config, String)>> {
-        let Some((study, _)) = self.finished.get(name) else { return Ok(Vec::new()) };
+        let Some(FinishedStudy { study, .. }) = self.finished.get(name) else {
+            return Ok(Vec::new());
+        };
         let read = |run: &PlannedRun| {
             let path = series_path(&self.study_folder(name), &run.key);
             let text = std::fs::read_to_string(&path).map_err(|error| Error::file(&path, error))?;
@@ -85,7 +162,7 @@ impl StudyRunner {
     pub(super) fn qualify(&self, studies: &[&str], claims: &mut [Claim]) {
         let tables = studies.iter().filter_map(|name| self.finished.get(name));
         let results: Vec<&RunResult> =
-            tables.flat_map(|(_, table)| table.rows.iter().map(|(.., result)| result)).collect();
+            tables.flat_map(|one| one.table.rows.iter().map(|(.., result)| result)).collect();
         let Some(alarms) = alarms_of(results.iter().copied()) else { return };
         let is_spoilt =
             |result: &&&RunResult| result.status != Status::Done || result.lost_grains > 0;
@@ -101,111 +178,15 @@ impl StudyRunner {
     }
 
     fn study_folder(&self, name: &str) -> PathBuf {
-        let pass = if self.quick { "quick" } else { "full" };
-        self.folder.join(pass).join(name)
+        self.folder.join(self.effort.name()).join(name)
     }
 
     /// A line for the caption of a figure of some studies, where one of them has run a quick pass.
     pub(super) fn note(&self, studies: &[&str]) -> Option<String> {
         let mut finished = studies.iter().filter_map(|name| self.finished.get(name));
-        finished.any(|(study, _)| study.is_quick_pass).then(|| {
+        finished.any(|one| one.study.is_quick_pass).then(|| {
             "Quick pass: coarser, fewer initial states; run without --quick for the figure.".into()
         })
-    }
-}
-
-pub(super) struct Rows<'a>(pub Vec<(&'a Config, &'a RunResult)>);
-
-impl<'a> Rows<'a> {
-    pub(super) fn such_that(&self, holds: impl Fn(&Config) -> bool) -> Self {
-        Self(self.0.iter().copied().filter(|(config, _)| holds(config)).collect())
-    }
-
-    /// Those of initial states that were not chosen for what they show.
-    pub(super) fn ensemble(&self) -> Self {
-        self.such_that(|config| config.source.seed != Some(NewPile::default().seed))
-    }
-
-    pub(super) fn of_bond(&self, bond: f64) -> Self {
-        self.such_that(|config| config.parameters.bond == Some(bond))
-    }
-
-    pub(super) fn of_step(&self, step: f64) -> Self {
-        self.such_that(|config| config.parameters.time_step_secs == Some(step))
-    }
-
-    pub(super) fn of_seed(&self, seed: u64) -> Self {
-        self.such_that(|config| config.source.seed == Some(seed))
-    }
-
-    pub(super) fn of_tolerance(&self, tolerance: f64) -> Self {
-        self.such_that(|config| config.solver.tolerance == Some(tolerance))
-    }
-
-    pub(super) fn values(&self, number: impl Fn(&Config) -> Option<f64>) -> Vec<f64> {
-        let mut values: Vec<f64> = self.0.iter().filter_map(|(config, _)| number(config)).collect();
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        values
-    }
-
-    pub(super) fn bonds(&self) -> Vec<f64> {
-        self.values(|config| config.parameters.bond)
-    }
-
-    pub(super) fn steps(&self) -> Vec<f64> {
-        self.values(|config| config.parameters.time_step_secs)
-    }
-
-    pub(super) fn tolerances(&self) -> Vec<f64> {
-        self.values(|config| config.solver.tolerance)
-    }
-
-    pub(super) fn seeds(&self) -> Vec<u64> {
-        let mut seeds: Vec<u64> =
-            self.0.iter().filter_map(|(config, _)| config.source.seed).collect();
-        seeds.sort_unstable();
-        seeds.dedup();
-        seeds
-    }
-
-    pub(super) fn results(&self, number: impl Fn(&RunResult) -> f64) -> Vec<f64> {
-        self.0.iter().map(|(_, result)| number(result)).collect()
-    }
-
-    pub(super) fn slumps(&self) -> Vec<f64> {
-        self.results(|result| result.slump)
-    }
-
-    /// Runs by what is said of them, in their order.
-    pub(super) fn parts(&self, words: impl Fn(&Config) -> String) -> Vec<(String, Self)> {
-        let mut parts: Vec<(String, Self)> = Vec::new();
-        for &(config, result) in &self.0 {
-            let words = words(config);
-            match parts.iter_mut().find(|(known, _)| *known == words) {
-                Some((_, part)) => part.0.push((config, result)),
-                None => parts.push((words, Self(vec![(config, result)]))),
-            }
-        }
-        parts
-    }
-
-    /// Two numbers of each run, rising by the first: a group a state and Bond, the states one after the other.
-    pub(super) fn groups(
-        &self,
-        x: impl Fn(&Config) -> f64,
-        y: impl Fn(&RunResult) -> f64,
-    ) -> Vec<Alike> {
-        let bonds = self.bonds();
-        let states = self.seeds().into_iter().map(|seed| self.of_seed(seed));
-        let groups = states.flat_map(|state| bonds.iter().map(move |&bond| state.of_bond(bond)));
-        let pairs = |group: Rows<'_>| {
-            let mut pairs: Alike =
-                group.0.iter().map(|(config, result)| (x(config), y(result))).collect();
-            pairs.sort_by(|one, other| one.0.total_cmp(&other.0));
-            pairs
-        };
-        groups.map(pairs).collect()
     }
 }
 
@@ -222,10 +203,6 @@ pub(super) fn changes(config: &Config, first: &Config) -> String {
     if changes.is_empty() { "as it is".to_owned() } else { changes.join(", ") }
 }
 
-pub(super) fn log_step(config: &Config) -> f64 {
-    config.parameters.time_step_secs.unwrap_or(1.0).log10()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -238,12 +215,12 @@ mod tests {
 
     /// A claim that holds, on those runs.
     fn qualified(results: &[&RunResult]) -> Claim {
-        let mut studies = StudyRunner::new(PathBuf::new(), true);
+        let mut studies = StudyRunner::new(PathBuf::new(), Effort::Quick);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";
         let study = Study::parse(text, "pile.toml".as_ref(), true).expect("a study");
         let rows = results.iter().map(|&result| (String::new(), Config::default(), result.clone()));
         let table = RunsTable { rows: rows.collect(), wall_secs: vec![0.0; results.len()] };
-        studies.finished.insert("pile", (study, table));
+        studies.finished.insert("pile", FinishedStudy::new(study, table));
         let mut claims = [Claim::new("it falls", "p = 0.001", Verdict::Holds)];
         studies.qualify(&["pile"], &mut claims);
         let [claim] = claims;

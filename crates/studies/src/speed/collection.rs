@@ -4,9 +4,12 @@
 use std::path::Path;
 
 use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::config::{Config, SceneSource};
 use crate::error::Result;
+use crate::harness::{Bench, Case, Effort, Runner, Threads};
 use crate::output::Progress;
 use crate::scene::{Deposition, NewPile, walls};
 use crate::sim::Simulation;
@@ -54,14 +57,14 @@ pub(super) struct CollectionPlan {
 }
 
 impl CollectionPlan {
-    /// 48 steps of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
+    /// 48 steps (24 in a quick pass) of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
     /// and rest.
-    pub(super) fn piles(restitution_threshold: f64) -> Self {
+    pub(super) fn piles(restitution_threshold: f64, effort: Effort) -> Self {
         let rain = NewPile::default();
         Self {
             bonds: vec![0.0, 20.0, 50.0, 100.0],
             time_steps_secs: vec![1e-4, 1e-3, 5e-3],
-            times_secs: vec![0.03, 0.1, 0.25, 0.6],
+            times_secs: effort.pick(vec![0.03, 0.1], vec![0.03, 0.1, 0.25, 0.6]),
             seeds: vec![rain.seed, 1, 2, 3],
             grains: rain.grains,
             box_width_in_diameters: rain.box_width_in_diameters,
@@ -73,19 +76,13 @@ impl CollectionPlan {
         }
     }
 
-    pub(super) fn fewer_piles(restitution_threshold: f64) -> Self {
-        Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
-    }
-
     /// Steps at Δt = 1e-3 s of piles without cohesion and with, made quickly, as steep as that of 138 grains: beginning to
     /// slump or, in their box, at rest. They stand in runs whose every step was solved within bounds of friction, so
     /// that what a warm start takes over is the error of no method.
-    pub(super) fn of_size(grains: usize, in_a_box: bool, quick: bool) -> Self {
-        let times_secs = match (in_a_box, quick) {
-            (true, true) => vec![5e-3],
-            (true, false) => vec![1e-2, 2e-2],
-            (false, true) => vec![2e-2],
-            (false, false) => vec![3e-2, 0.1],
+    pub(super) fn of_size(grains: usize, in_a_box: bool, effort: Effort) -> Self {
+        let times_secs = match in_a_box {
+            true => effort.pick(vec![5e-3], vec![1e-2, 2e-2]),
+            false => effort.pick(vec![2e-2], vec![3e-2, 0.1]),
         };
         Self {
             // The second one is felt, and yet lets a pile of any size slump.
@@ -107,21 +104,24 @@ impl CollectionPlan {
         }
     }
 
-    pub(super) fn names(&self) -> Vec<String> {
-        let of_pile =
-            |config: &Config| self.times_secs.iter().map(|&time| self.name(config, time)).collect();
-        self.configs().iter().flat_map(|config| -> Vec<String> { of_pile(config) }).collect()
+    /// Bond number, Δt (s) and time (s) of each step.
+    pub(super) fn steps(&self) -> Vec<[f64; 3]> {
+        let of_pile = |bond, step| self.times_secs.iter().map(move |&time| [bond, step, time]);
+        let steps =
+            |&bond: &f64| self.time_steps_secs.iter().flat_map(move |&step| of_pile(bond, step));
+        self.bonds.iter().flat_map(steps).collect()
     }
 
-    fn name(&self, config: &Config, time_secs: f64) -> String {
+    pub(super) fn names(&self) -> Vec<String> {
         let Self { grains, in_a_box, restitution_threshold, friction, .. } = self;
-        let ParameterChanges { bond, time_step_secs, .. } = config.parameters;
-        let (bond, step) = (bond.unwrap_or_default(), time_step_secs.unwrap_or_default());
         let place = if *in_a_box { " in a box" } else { "" };
         let friction = friction.map_or(String::new(), |it| format!(", μ {it}"));
-        format!(
-            "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time_secs}, threshold {restitution_threshold}"
-        )
+        let name = |[bond, step, time]: [f64; 3]| {
+            format!(
+                "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time}, threshold {restitution_threshold}"
+            )
+        };
+        self.steps().into_iter().map(name).collect()
     }
 
     /// A pile for every Bond number and time step. Going on by one in both, no time step and no
@@ -188,6 +188,23 @@ pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
     Ok(piles?.into_iter().flatten().collect())
 }
 
+/// The result of each step of a plan: computed, or from the journal of that name.
+pub(super) fn over_steps<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
+    bench: &Bench,
+    journal: &str,
+    plan: &CollectionPlan,
+    threads: Threads,
+    compute: impl Fn(&Simulation) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    let runner: Runner<T> = bench.runner(journal)?;
+    let case = |(setup, key)| Case { key, cost: 1.0, setup };
+    let cases: Vec<Case<usize>> = plan.names().into_iter().enumerate().map(case).collect();
+    let is_finished = cases.iter().all(|case| runner.has(&case.key));
+    let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
+    let results = runner.run(&cases, threads, |&step| compute(&steps[step]))?;
+    Ok(results.into_iter().map(|case| case.result).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -201,7 +218,7 @@ mod tests {
             seeds: vec![1, 2],
             grains: 30,
             box_width_in_diameters: 8.0,
-            ..CollectionPlan::piles(2.0)
+            ..CollectionPlan::piles(2.0, Effort::Full)
         }
     }
 
@@ -247,13 +264,14 @@ mod tests {
     #[test]
     fn boxes_are_as_steep_as_the_papers() {
         let paper = NewPile::default();
-        let width = CollectionPlan::of_size(paper.grains, false, false).box_width_in_diameters;
+        let width =
+            CollectionPlan::of_size(paper.grains, false, Effort::Full).box_width_in_diameters;
         assert_eq!(width, paper.box_width_in_diameters);
     }
 
     #[test]
     fn no_bond_number_and_no_time_step_meets_one_state_alone() {
-        let plan = CollectionPlan::piles(0.0);
+        let plan = CollectionPlan::piles(0.0, Effort::Full);
         assert!(steps(&plan) >= 40);
         let configs = plan.configs();
         for bond in &plan.bonds {

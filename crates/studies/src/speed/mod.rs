@@ -16,15 +16,10 @@ mod variants;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-
-use super::chart::Sheet;
-use super::machine::Machine;
+use crate::chart::Sheet;
 use crate::error::Result;
-use crate::output::{check_writable, note_line, print_line, print_text, remove_drafts, write_file};
-use crate::report::{ReportTable, write_sheet};
-use crate::runner::Runner;
+use crate::harness::{Bench, Effort, ReportTable};
+use crate::output::{note_line, print_text};
 
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -60,46 +55,8 @@ struct ChartSection {
     name: String,
     sheet: Sheet,
     words: String,
-    summary: ReportTable,
-    /// Tables that the report does not show.
-    others: Vec<ReportTable>,
-}
-
-struct Bench<'a> {
-    options: &'a ChartOptions,
-    machine: Machine,
-}
-
-impl Bench<'_> {
-    fn states_folder(&self) -> PathBuf {
-        self.options.out.join("states")
-    }
-
-    fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
-        &self,
-        name: &str,
-    ) -> Result<Runner<T>> {
-        self.machine.runner(&self.options.out, self.options.quick, name)
-    }
-
-    /// Lines below a chart: what it shows, then where it was measured.
-    fn caption(&self, lines: &[&str]) -> Vec<String> {
-        let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
-        let quick = if self.options.quick { "Quick pass. " } else { "" };
-        caption.push(format!("{quick}{}", self.machine.words()));
-        caption
-    }
-
-    /// Writes the files of a section, and gives its part of the report.
-    fn write(&self, section: &ChartSection) -> Result<String> {
-        let ChartSection { name, sheet, words, summary, others } = section;
-        let folder = &self.options.out;
-        write_sheet(folder, name, sheet, &self.machine.command)?;
-        for table in others.iter().chain([summary]) {
-            write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
-        }
-        Ok(format!("\n![{name}]({name}.png)\n\n{words}\n\n{}\n", summary.to_markdown()))
-    }
+    /// The first is a part of the report.
+    tables: Vec<ReportTable>,
 }
 
 /// Measures and draws into a folder. The charts say that `version` of the program made them.
@@ -107,8 +64,7 @@ impl Bench<'_> {
 /// # Errors
 /// Where the folder cannot be written, or a simulation fails.
 pub fn chart_speed(options: &ChartOptions, version: &str) -> Result<()> {
-    check_writable("out", &options.out)?;
-    let bench = Bench { options, machine: Machine::this(version)? };
+    let bench = Bench::new(&options.out, Effort::new(options.quick), version)?;
     let is_wanted = |part| match part {
         _ if !options.only.is_empty() => options.only.contains(&part),
         ChartPart::Size | ChartPart::Solutions => options.large,
@@ -125,17 +81,15 @@ pub fn chart_speed(options: &ChartOptions, version: &str) -> Result<()> {
     for (_, title, make) in makers.into_iter().filter(|(part, ..)| is_wanted(*part)) {
         let begun = Instant::now();
         report.push_str(&format!("\n## {title}\n"));
-        for section in make(&bench)? {
-            report.push_str(&bench.write(&section)?);
+        for ChartSection { name, sheet, words, tables } in make(&bench)? {
+            bench.write((&name, &sheet), &tables, &bench.machine.command)?;
+            let summary = tables.first().map_or_else(String::new, ReportTable::to_markdown);
+            report.push_str(&format!("\n![{name}]({name}.png)\n\n{words}\n\n{summary}\n"));
         }
         note_line(format_args!("{title}: {:.0} s", begun.elapsed().as_secs_f64()));
     }
-    let path = options.out.join("chart.md");
-    write_file(&path, report.as_bytes())?;
-    remove_drafts(&options.out)?;
-    print_text(&report);
-    print_line(format_args!("\n{}", path.display()));
-    Ok(())
+    print_text(format!("{report}\n"));
+    bench.finish("chart.md", &report)
 }
 
 fn listed<T>(values: impl IntoIterator<Item = T>, word: impl Fn(T) -> String) -> String {

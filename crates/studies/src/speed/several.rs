@@ -1,12 +1,11 @@
 //! How many solutions the steps of piles have under Coulomb's law, and how far apart they are.
 
-use super::collection::{CollectionPlan, collect};
+use super::collection::{CollectionPlan, over_steps};
 use super::solves::{ReferenceSearch, References};
 use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::Result;
-use crate::report::ReportTable;
-use crate::runner::{Case, Runner, Threads};
+use crate::harness::{Effort, ReportTable, Threads};
 use crate::solver::SolutionSearch;
 
 const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
@@ -18,13 +17,6 @@ const LEAST_DISTANCE: f64 = 1e-6;
 /// Curves of Bonds stand so far aside, as a factor of the number of grains.
 const ASIDE: f64 = 1.12;
 
-/// Piles of one size and kind.
-struct SolutionPlan {
-    name: String,
-    friction: f64,
-    plan: CollectionPlan,
-}
-
 /// What was found of a step.
 struct SearchedStep {
     friction: f64,
@@ -35,10 +27,11 @@ struct SearchedStep {
     found: References,
 }
 
-fn plans(quick: bool) -> Vec<SolutionPlan> {
-    let sizes: &[(usize, &[f64])] = match quick {
-        true => &[(138, &[0.1])],
-        false => &[(138, &[0.05, 0.1, 0.2]), (500, &[0.05, 0.1, 0.2]), (2_000, &[0.1])],
+/// Plans of one size and kind each, with their names.
+fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
+    let sizes: &[(usize, &[f64])] = match effort {
+        Effort::Quick => &[(138, &[0.1])],
+        Effort::Full => &[(138, &[0.05, 0.1, 0.2]), (500, &[0.05, 0.1, 0.2]), (2_000, &[0.1])],
     };
     let mut plans = Vec::new();
     for &(grains, times_secs) in sizes {
@@ -50,11 +43,11 @@ fn plans(quick: bool) -> Vec<SolutionPlan> {
                     time_steps_secs: TIME_STEPS_SECS.to_vec(),
                     times_secs: times_secs.to_vec(),
                     friction: Some(friction),
-                    ..CollectionPlan::of_size(grains, in_a_box, quick)
+                    ..CollectionPlan::of_size(grains, in_a_box, effort)
                 };
                 let state = if in_a_box { "at rest" } else { "moving" };
                 let name = format!("{grains} grains, {state}, μ {friction}");
-                plans.push(SolutionPlan { name, friction, plan });
+                plans.push((name, plan));
             }
         }
     }
@@ -62,19 +55,21 @@ fn plans(quick: bool) -> Vec<SolutionPlan> {
 }
 
 /// How they are looked for.
-fn search(quick: bool) -> SolutionSearch {
-    let max_sweeps = if quick { 5_000 } else { 20_000 };
+fn search(effort: Effort) -> SolutionSearch {
+    let max_sweeps = effort.pick(5_000, 20_000);
     SolutionSearch { starts: 4, seed: 1, max_sweeps, tolerance: 1e-10 }
 }
 
 /// Searches all steps, some at a time, and draws how far apart the solutions are.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let search = search(bench.options.quick);
+    let search = search(bench.effort);
     let mut all = Vec::new();
     let (columns, mut rows) =
         ("piles steps with_several median_distance largest_distance", Vec::new());
-    for SolutionPlan { name, friction, plan } in plans(bench.options.quick) {
-        let found = searched(bench, &plan, search)?;
+    for (name, plan) in plans(bench.effort) {
+        let found: Vec<References> = over_steps(bench, "solutions", &plan, Threads::All, |step| {
+            Ok(step.next_problem(ReferenceSearch(search)))
+        })?;
         let several = found.iter().filter(|it| it.found > 1);
         let mut distances: Vec<f64> = several.map(|it| it.spread).collect();
         distances.sort_by(f64::total_cmp);
@@ -86,24 +81,19 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
             told(distances.get(distances.len() / 2)),
             told(distances.last()),
         ]);
-        let CollectionPlan { grains, in_a_box, .. } = plan;
-        let mut found = found.into_iter();
-        for bond in BONDS {
-            for time_step_secs in TIME_STEPS_SECS {
-                let of_pile = found.by_ref().take(plan.times_secs.len());
-                all.extend(of_pile.map(|found| SearchedStep {
-                    friction,
-                    grains,
-                    in_a_box,
-                    bond,
-                    time_step_secs,
-                    found,
-                }));
-            }
-        }
+        let CollectionPlan { grains, in_a_box, friction, .. } = plan;
+        let friction = friction.unwrap_or_default();
+        let steps = plan.steps().into_iter().zip(found);
+        all.extend(steps.map(|([bond, time_step_secs, _], found)| SearchedStep {
+            friction,
+            grains,
+            in_a_box,
+            bond,
+            time_step_secs,
+            found,
+        }));
     }
-    let columns = columns.split(' ').collect();
-    let summary = ReportTable { name: "chart-solutions-piles".into(), columns, rows };
+    let summary = ReportTable::new("chart-solutions-piles", columns, rows);
     let words = format!(
         "{} starts a step: the impulses of the step before, none, and random ones that the law allows, each solved with up to {} \
          sweeps of conjugate gradients and then by Newton's method to a residual of {:e}. Two results are two solutions \
@@ -111,24 +101,8 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
          √(g d).",
         search.starts, search.max_sweeps, search.tolerance
     );
-    let (name, others) = ("chart-solutions".to_owned(), vec![steps(&all)]);
-    Ok(vec![ChartSection { name, sheet: sheet(bench, &all), words, summary, others }])
-}
-
-fn searched(
-    bench: &Bench,
-    plan: &CollectionPlan,
-    search: SolutionSearch,
-) -> Result<Vec<References>> {
-    let runner: Runner<References> = bench.runner("solutions")?;
-    let names = plan.names();
-    let case = |(setup, key): (usize, &String)| Case { key: key.clone(), cost: 1.0, setup };
-    let cases: Vec<Case<usize>> = names.iter().enumerate().map(case).collect();
-    let is_finished = cases.iter().all(|case| runner.has(&case.key));
-    let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
-    let results = runner
-        .run(&cases, Threads::All, |&step| Ok(steps[step].next_problem(ReferenceSearch(search))))?;
-    Ok(results.into_iter().map(|case| case.result).collect())
+    let (name, tables) = ("chart-solutions".to_owned(), vec![summary, steps(&all)]);
+    Ok(vec![ChartSection { name, sheet: sheet(bench, &all), words, tables }])
 }
 
 fn sheet(bench: &Bench, all: &[SearchedStep]) -> Sheet {
@@ -179,6 +153,5 @@ fn steps(all: &[SearchedStep]) -> ReportTable {
             format!("{residual:e}"),
         ]
     };
-    let name = "chart-solutions-steps".to_owned();
-    ReportTable { name, columns: columns.split(' ').collect(), rows: all.iter().map(row).collect() }
+    ReportTable::new("chart-solutions-steps", columns, all.iter().map(row))
 }

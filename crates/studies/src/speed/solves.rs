@@ -6,9 +6,9 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::performance::Timing;
-use super::variants::ChartedVariant;
 use crate::contact::ContactList;
 use crate::error::Result;
+use crate::harness::Change;
 use crate::number;
 use crate::sim::{ProblemVisitor, Simulation};
 use crate::solver::{
@@ -79,7 +79,7 @@ impl ProblemVisitor for ReferenceSearch {
 
 /// A solve with so many sweeps at most.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Effort {
+pub(super) struct TimedSolve {
     pub sweeps: u32,
     /// Least time, s.
     pub secs: f64,
@@ -90,13 +90,13 @@ pub(super) struct Effort {
 
 /// What one method comes to on one step, with more and more sweeps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct TimedSolves(pub Vec<Effort>);
+pub(super) struct TimedSolves(pub Vec<TimedSolve>);
 
 impl TimedSolves {
     /// Until an error was reached.
     pub(super) fn timing(&self, error: f64) -> Timing {
         let reached = self.0.iter().find(|effort| effort.error <= error);
-        let secs = |effort: &Effort| effort.secs;
+        let secs = |solve: &TimedSolve| solve.secs;
         match reached {
             Some(effort) => Timing { secs: effort.secs, solved: true },
             None => Timing { secs: self.0.last().map_or(f64::INFINITY, secs), solved: false },
@@ -104,7 +104,7 @@ impl TimedSolves {
     }
 
     /// The solve of that number, or the last one, which more sweeps change no more.
-    pub(super) fn effort(&self, number: usize) -> Option<Effort> {
+    pub(super) fn effort(&self, number: usize) -> Option<TimedSolve> {
         self.0.get(number).or(self.0.last()).copied()
     }
 }
@@ -112,7 +112,7 @@ impl TimedSolves {
 /// Times the solves of one step, each from the same start, until one ends by itself or takes too long. Copies of the
 /// problem are made outside of the clock.
 pub(super) struct SolveTimer<'a> {
-    pub variant: &'a ChartedVariant,
+    pub variant: &'a Change,
     pub references: &'a References,
     /// A solve that takes longer is the last one, s.
     pub limit_secs: f64,
@@ -126,9 +126,9 @@ impl SolveTimer<'_> {
         Ok(simulation.next_problem(self))
     }
 
-    fn effort<M: Model>(&self, problem: &StepProblem<M>, sweeps: u32) -> (Effort, bool) {
+    fn effort<M: Model>(&self, problem: &StepProblem<M>, sweeps: u32) -> (TimedSolve, bool) {
         let settings = self.variant.sweeps(sweeps);
-        let mut effort = Effort { sweeps, secs: f64::INFINITY, error: f64::NAN };
+        let mut effort = TimedSolve { sweeps, secs: f64::INFINITY, error: f64::NAN };
         let (mut sum_secs, mut has_ended) = (0.0, false);
         for repeat in 0..MOST_REPEATS {
             if repeat >= LEAST_REPEATS && sum_secs > ENOUGH_SECS {
@@ -189,11 +189,12 @@ mod tests {
     use super::super::collection::{CollectionPlan, collect};
     use super::super::variants;
     use super::*;
+    use crate::harness::Effort;
     use crate::solver::Method;
 
     fn collected(grains: usize, in_a_box: bool) -> Vec<Simulation> {
         let folder = tempfile::tempdir().expect("a folder");
-        let plan = CollectionPlan::of_size(grains, in_a_box, true);
+        let plan = CollectionPlan::of_size(grains, in_a_box, Effort::Quick);
         collect(&plan, folder.path()).expect("a collection")
     }
 
@@ -202,7 +203,7 @@ mod tests {
 
     fn time(
         step: &Simulation,
-        variant: &ChartedVariant,
+        variant: &Change,
         references: &References,
         limit_secs: f64,
     ) -> TimedSolves {
@@ -232,7 +233,7 @@ mod tests {
         let step = &collected(138, false)[0];
         let references = &step.next_problem(ReferenceSearch(SEARCH));
         assert!(references.found > 0 && references.residual < 1e-8, "{references:?}");
-        let last = |variant: &ChartedVariant| {
+        let last = |variant: &Change| {
             let solves = time(step, variant, references, 0.2);
             (solves.0[0].error, solves.0.last().expect("a solve").error)
         };
@@ -251,7 +252,7 @@ mod tests {
         let unit = variants::of_method(Method::Nsgs);
         let solves = time(step, &unit, references, 1e-12);
         assert_eq!(solves.0.len(), 1);
-        let Effort { secs, error, .. } = solves.0[0];
+        let TimedSolve { secs, error, .. } = solves.0[0];
         assert_eq!(solves.timing(1.01 * error), Timing { secs, solved: true });
         assert_eq!(solves.timing(0.99 * error), Timing { secs, solved: false });
     }

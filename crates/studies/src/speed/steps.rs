@@ -2,17 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::collection::{CollectionPlan, collect};
+use super::collection::{CollectionPlan, over_steps};
 use super::performance::{Timing, geometric_mean, share_solved, speed_ratio};
 use super::solves::{
     LEAST_REPEATS, LONG_SOLVE_SECS, ReferenceSearch, References, SolveTimer, TimedSolves,
 };
-use super::variants::{self, ChartedVariant, Family};
+use super::variants::{self, Family};
 use super::{Bench, ChartSection};
 use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, pareto_front, points};
 use crate::error::Result;
-use crate::report::ReportTable;
-use crate::runner::{Case, Runner, Threads};
+use crate::harness::{Change, Effort, ReportTable, Threads};
 use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 
 /// Threshold of restitution with which nearly every step has a solution.
@@ -42,29 +41,35 @@ struct TimedCollection {
     /// Most time of a solve, s.
     limit_secs: f64,
     problems: Vec<String>,
-    variants: Vec<ChartedVariant>,
+    variants: Vec<Change>,
     steps: Vec<TimedStep>,
 }
 
 /// Times all variants over steps of 138 grains.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let quick = bench.options.quick;
-    let timer = CollectionTimer { variants: with_bounds(variants::of_problems(!quick)) };
-    let limit_secs = if quick { 0.02 } else { 0.2 };
-    let pick = if quick { CollectionPlan::fewer_piles } else { CollectionPlan::piles };
+    let effort = bench.effort;
+    let timer =
+        CollectionTimer { variants: with_bounds(variants::of_problems(effort == Effort::Full)) };
+    let limit_secs = effort.pick(0.02, 0.2);
     let mut all = Vec::new();
     for (label, threshold, title) in [
         ("steps", THRESHOLD, "steps, restitution from 2 g·Δt up"),
         ("steps-paper", 0.0, "steps, restitution as in the paper"),
     ] {
-        all.push(timer.time(bench, label, &pick(threshold), title, limit_secs)?);
+        all.push(timer.time(
+            bench,
+            label,
+            &CollectionPlan::piles(threshold, effort),
+            title,
+            limit_secs,
+        )?);
     }
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
 
 /// Times all variants over steps of piles of all sizes, which begin to slump or rest in their box.
 pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let quick = bench.options.quick;
+    let effort = bench.effort;
     let timer = CollectionTimer { variants: with_bounds(variants::of_problems(false)) };
     let mut sections = Vec::new();
     for (name, in_a_box, state) in
@@ -72,8 +77,8 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     {
         let mut all = Vec::new();
         for grains in SIZES {
-            let plan = CollectionPlan::of_size(grains, in_a_box, quick);
-            let limit_secs = if quick { 1e-4 } else { 5e-4 } * grains as f64;
+            let plan = CollectionPlan::of_size(grains, in_a_box, effort);
+            let limit_secs = effort.pick(1e-4, 5e-4) * grains as f64;
             let title = format!("steps of {grains} grains {state}");
             all.push(timer.time(bench, "sizes", &plan, &title, limit_secs)?);
         }
@@ -83,14 +88,14 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
 }
 
 /// Bounds of friction as well, by sweeps and by the interior point.
-fn with_bounds(mut variants: Vec<ChartedVariant>) -> Vec<ChartedVariant> {
+fn with_bounds(mut variants: Vec<Change>) -> Vec<Change> {
     let models = variants::models().into_iter();
-    variants.extend(models.filter(|one| one.solver.friction_model == FrictionModel::Tresca));
+    variants.extend(models.filter(|one| one.solver().friction_model == FrictionModel::Tresca));
     variants
 }
 
 struct CollectionTimer {
-    variants: Vec<ChartedVariant>,
+    variants: Vec<Change>,
 }
 
 impl CollectionTimer {
@@ -103,14 +108,7 @@ impl CollectionTimer {
         title: &str,
         limit_secs: f64,
     ) -> Result<TimedCollection> {
-        let runner: Runner<TimedStep> = bench.runner(journal)?;
-        let problems = plan.names();
-        let case = |(setup, key): (usize, &String)| Case { key: key.clone(), cost: 1.0, setup };
-        let cases: Vec<Case<usize>> = problems.iter().enumerate().map(case).collect();
-        let is_finished = cases.iter().all(|case| runner.has(&case.key));
-        let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
-        let results = runner.run(&cases, Threads::One, |&step| {
-            let step = &steps[step];
+        let steps = over_steps(bench, journal, plan, Threads::One, |step| {
             let references = step.next_problem(ReferenceSearch(SEARCH));
             let timers = self.variants.iter();
             let timers =
@@ -118,12 +116,13 @@ impl CollectionTimer {
             let solves = timers.map(|timer| timer.time(step)).collect::<Result<_>>()?;
             Ok(TimedStep { references, solves })
         })?;
+        let problems = plan.names();
         Ok(TimedCollection {
             title: format!("{} {title}", problems.len()),
             limit_secs,
             problems,
             variants: self.variants.clone(),
-            steps: results.into_iter().map(|case| case.result).collect(),
+            steps,
         })
     }
 
@@ -132,8 +131,7 @@ impl CollectionTimer {
             name: name.to_owned(),
             sheet: errors_sheet(bench, all),
             words: words(all),
-            summary: summary(name, all),
-            others: vec![efforts(name, all)],
+            tables: vec![summary(name, all), efforts(name, all)],
         }
     }
 }
@@ -207,7 +205,7 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
         chart.add_end_labels(ends);
         charts.push(chart);
     }
-    let charted = all.first().map_or(&[][..], |timed| &timed.variants);
+    let charted = all.iter().take(1).flat_map(|timed| &timed.variants);
     let caption = bench.caption(&[
         "Median error against median time of the best member of each family, with 1, 2, 4, 8 … sweeps or factorisations, \
          warm start. The error is the distance to the nearest solution of Coulomb's law that was found.",
@@ -251,7 +249,7 @@ fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
     let columns = "collection method error share_reached mean_ms ratio_to_nsgs_at_least";
     let mut rows = Vec::new();
     for timed in all {
-        let is_base = |one: &ChartedVariant| (one.solver.method, one.solver.ordering) == BASE;
+        let is_base = |one: &Change| (one.solver().method, one.solver().ordering) == BASE;
         let base = timed.variants.iter().position(is_base).unwrap_or(0);
         for error in REPORTED {
             for (number, variant) in timed.variants.iter().enumerate() {
@@ -268,7 +266,7 @@ fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
             }
         }
     }
-    ReportTable { name: format!("{name}-ratios"), columns: columns.split(' ').collect(), rows }
+    ReportTable::new(format!("{name}-ratios"), columns, rows)
 }
 
 fn efforts(name: &str, all: &[TimedCollection]) -> ReportTable {
@@ -291,18 +289,18 @@ fn efforts(name: &str, all: &[TimedCollection]) -> ReportTable {
             }
         }
     }
-    ReportTable { name: format!("{name}-efforts"), columns: columns.split(' ').collect(), rows }
+    ReportTable::new(format!("{name}-efforts"), columns, rows)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::solves::Effort;
+    use super::super::solves::TimedSolve;
     use super::*;
 
     #[test]
     fn a_front_takes_the_best_of_a_family_and_a_solve_that_ended_stays_as_good() {
         let solves = |efforts: &[(f64, f64)]| {
-            let effort = |&(secs, error): &(f64, f64)| Effort { sweeps: 1, secs, error };
+            let effort = |&(secs, error): &(f64, f64)| TimedSolve { sweeps: 1, secs, error };
             TimedSolves(efforts.iter().map(effort).collect())
         };
         let variants = vec![variants::of_method(Method::Nsgs), variants::of_method(Method::Jacobi)];

@@ -1,6 +1,7 @@
 //! The solver variants that are charted: every method of the registry with its settings.
 
 use crate::chart::{PALETTE, Rgb};
+use crate::harness::{Change, distinct};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
@@ -54,22 +55,14 @@ impl Family {
 }
 
 /// Which of these variants are of which family, for captions.
-pub(super) fn members(variants: &[ChartedVariant]) -> String {
+pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) -> String {
     let of = |family: Family| {
-        let its = variants.iter().filter(|variant| variant.family() == family);
-        let names: Vec<&str> = its.map(|variant| &*variant.name).collect();
+        let its = variants.clone().filter(|variant| variant.family() == family);
+        let names = distinct(its.map(|variant| &*variant.name));
         (!names.is_empty()).then(|| format!("{}: {}", family.name(), names.join(", ")))
     };
     let all: Vec<String> = Family::ALL.into_iter().filter_map(of).collect();
     format!("{}.", all.join("; "))
-}
-
-/// A method with its settings, or a stepper that has none, as it is charted.
-#[derive(Clone, Debug)]
-pub(super) struct ChartedVariant {
-    pub name: String,
-    pub stepper: Stepper,
-    pub solver: SolverSettings,
 }
 
 /// Steppers that solve no problem by a method: variants by themselves.
@@ -78,34 +71,31 @@ fn without_method() -> impl Iterator<Item = Stepper> {
 }
 
 /// Every method of the registry, in its order, and every stepper without one.
-pub(super) fn all() -> Vec<ChartedVariant> {
+pub(super) fn all() -> Vec<Change> {
     let mut variants = of_problems(false);
-    variants.extend(without_method().map(|stepper| {
-        let (name, solver) = (stepper.name().to_owned(), SolverSettings::SWEEPS);
-        ChartedVariant { name, stepper, solver }
-    }));
+    let of = |stepper: Stepper| Change::of_solver(stepper.name(), stepper, &SolverSettings::SWEEPS);
+    variants.extend(without_method().map(of));
     variants
 }
 
-pub(super) fn of_method(method: Method) -> ChartedVariant {
+pub(super) fn of_method(method: Method) -> Change {
     of_model(method, FrictionModel::Coulomb)
 }
 
 /// What solves a step if nothing is asked for: Coulomb's law, to a velocity error.
-pub(super) fn default() -> ChartedVariant {
-    let name = "default".to_owned();
-    ChartedVariant { name, stepper: Stepper::Moreau, solver: SolverSettings::default() }
+pub(super) fn default() -> Change {
+    Change::of_solver("default", Stepper::Moreau, &SolverSettings::default())
 }
 
 /// Those that solve the problem of a step, and Gauss–Seidel in its other orders where `orders` are asked for.
-pub(super) fn of_problems(orders: bool) -> Vec<ChartedVariant> {
+pub(super) fn of_problems(orders: bool) -> Vec<Change> {
     let own = METHODS.iter().map(|info| info.method).filter(|method| *method != Method::Auto);
-    let mut variants: Vec<ChartedVariant> = own.map(of_method).chain([default()]).collect();
+    let mut variants: Vec<Change> = own.map(of_method).chain([default()]).collect();
     if orders {
         for ordering in [Ordering::BottomUp, Ordering::Detected, Ordering::Symmetric] {
             let mut variant = of_method(Method::Nsgs);
             variant.name = format!("nsgs {ordering}");
-            variant.solver.ordering = ordering;
+            variant.config.solver.ordering = Some(ordering);
             variants.push(variant);
         }
     }
@@ -113,59 +103,60 @@ pub(super) fn of_problems(orders: bool) -> Vec<ChartedVariant> {
 }
 
 /// Models of friction in the place of Coulomb's law, by sweeps, and bounds of friction by the interior point.
-pub(super) fn models() -> Vec<ChartedVariant> {
+pub(super) fn models() -> Vec<Change> {
     let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
     models.map(|&model| of_model(Method::Nsgs, model)).chain([bounded()]).collect()
 }
 
 /// Bounds of friction, whose convex problem is solved at any size.
-pub(super) fn bounded() -> ChartedVariant {
+pub(super) fn bounded() -> Change {
     of_model(Method::InteriorPoint, FrictionModel::Tresca)
 }
 
-fn of_model(method: Method, friction_model: FrictionModel) -> ChartedVariant {
+fn of_model(method: Method, friction_model: FrictionModel) -> Change {
     let solver = SolverSettings { method, friction_model, ..SolverSettings::SWEEPS };
     let name = match friction_model {
         FrictionModel::Coulomb => method.to_string(),
         _ => format!("{method} {friction_model}"),
     };
-    ChartedVariant { name, stepper: Stepper::Moreau, solver }
+    Change::of_solver(name, Stepper::Moreau, &solver)
 }
 
-impl ChartedVariant {
+/// What charts ask of variants.
+impl Change {
     /// True of [`default`], whose effort is its own affair.
     pub(super) fn is_default(&self) -> bool {
-        self.solver.method == Method::Auto
+        self.solver().method == Method::Auto
     }
 
     pub(super) fn method(&self) -> Option<Method> {
-        self.stepper.uses_method().then_some(self.solver.method)
+        self.stepper().uses_method().then_some(self.solver().method)
     }
 
     pub(super) fn to_residual(&self, tolerance: f64, max_sweeps: u32) -> SolverSettings {
         let stop = StopTest::Residual;
-        SolverSettings { stop, tolerance, max_sweeps, warm_start: true, ..self.solver }
+        SolverSettings { stop, tolerance, max_sweeps, warm_start: true, ..self.solver() }
     }
 
     /// Warm-started, with so many sweeps, whatever they come to; of the default its own settings.
     pub(super) fn sweeps(&self, count: u32) -> SolverSettings {
         match self.is_default() {
-            true => self.solver,
+            true => self.solver(),
             false => self.to_residual(f64::MIN_POSITIVE, count),
         }
     }
 
     pub(super) fn family(&self) -> Family {
-        if !self.stepper.uses_method() {
+        if !self.stepper().uses_method() {
             return Family::Penalties;
         }
-        if self.stepper == Stepper::Range {
+        if self.stepper() == Stepper::Range {
             return Family::Range;
         }
-        if self.solver.friction_model != FrictionModel::Coulomb {
+        if self.solver().friction_model != FrictionModel::Coulomb {
             return Family::Convex;
         }
-        match self.solver.method {
+        match self.solver().method {
             Method::Auto => Family::Default,
             Method::Newton | Method::InteriorPoint => Family::Newton,
             Method::Nncg | Method::Apgd | Method::Admm => Family::FirstOrder,
@@ -181,7 +172,9 @@ mod tests {
     #[test]
     fn every_family_has_members_and_the_names_of_variants_differ() {
         let mut variants: Vec<_> = all().into_iter().chain(models()).collect();
-        variants.push(ChartedVariant { stepper: Stepper::Range, ..of_method(Method::Newton) });
+        let mut of_range = of_method(Method::Newton);
+        of_range.config.stepper = Some(Stepper::Range);
+        variants.push(of_range);
         for family in Family::ALL {
             assert!(variants.iter().any(|variant| variant.family() == family), "{family:?}");
         }

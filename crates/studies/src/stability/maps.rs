@@ -20,13 +20,16 @@ use rayon::prelude::*;
 
 use super::rest::{CANTILEVER, sagging, sunk};
 use super::table::colour;
-use super::{TriedVariant, VARIANTS, jitter};
+use super::{VARIANTS, jitter, step_by};
 use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, Sheet, points};
 use crate::error::{Error, Result};
+use crate::harness::{Change, Effort};
 use crate::scene::Scene;
 use crate::scene::stability::{
     breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
 };
+use crate::sim::Stepper;
+use crate::solver::METHODS;
 
 /// Simulated time of every run, s.
 const DURATION_SECS: f64 = 0.1;
@@ -62,8 +65,8 @@ const fn sweeps(to: f64) -> Parameter {
 
 impl Parameter {
     /// A dozen values in ratio, half of them in a quick pass, each with the edges of its cell.
-    fn values(&self, quick: bool) -> Vec<(f64, [f64; 2])> {
-        let count = if quick { 6 } else { 12 };
+    fn values(&self, effort: Effort) -> Vec<(f64, [f64; 2])> {
+        let count = effort.pick(6, 12);
         let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
         let edge = |k: i32| self.from * ratio.powi(k);
         let value = |k: i32| {
@@ -162,9 +165,9 @@ fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
 /// 0 where the variant holds, 1 where it sinks or overlaps, 2 where it is lost.
 ///
 /// A step left unsolved sinks steadily. Stiff springs that are stable have come to rest, but where they `may_swing`.
-fn class(variant: &TriedVariant, scene: &Scene, may_swing: bool) -> Result<f64> {
+fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     let mut scene = scene.clone();
-    variant.apply(&mut scene);
+    step_by(variant, &mut scene);
     let mut simulation = scene.simulation()?;
     let mut overlap = 0f64;
     while simulation.time_secs() < DURATION_SECS {
@@ -187,8 +190,10 @@ fn class(variant: &TriedVariant, scene: &Scene, may_swing: bool) -> Result<f64> 
 }
 
 /// The methods and steppers of the registry, which alone have maps.
-fn of_registry() -> impl Iterator<Item = &'static TriedVariant> {
-    VARIANTS.iter().filter(|variant| variant.is_of_registry())
+fn of_registry() -> impl Iterator<Item = &'static Change> {
+    let steppers = Stepper::ALL.iter().map(|stepper| stepper.name());
+    let names: Vec<&str> = METHODS.iter().map(|info| info.name).chain(steppers).collect();
+    VARIANTS.iter().filter(move |variant| names.contains(&&*variant.name))
 }
 
 /// All maps, each with its file's name: the methods of the registry side by side.
@@ -200,7 +205,7 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
     for map in &MAPS {
         let mut charts = Vec::new();
         for variant in of_registry() {
-            charts.push(map.chart(variant, quick)?);
+            charts.push(map.chart(variant, Effort::new(quick))?);
             progress();
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
@@ -231,9 +236,9 @@ impl Map {
         self.borders.iter().any(|(name, ..)| *name == STATICS)
     }
 
-    fn chart(&self, variant: &TriedVariant, quick: bool) -> Result<Chart> {
-        let rows = self.y.values(quick);
-        let columns = self.x.values(quick).into_par_iter();
+    fn chart(&self, variant: &Change, effort: Effort) -> Result<Chart> {
+        let rows = self.y.values(effort);
+        let columns = self.x.values(effort).into_par_iter();
         let cells = columns
             .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
             .map(|(x, y)| {
@@ -243,7 +248,7 @@ impl Map {
             .collect::<Result<Vec<_>>>()?;
         let title = format!("{}: {}", self.title, variant.name);
         let mut chart = Chart::new(title, self.x.axis(), self.y.axis());
-        chart.layers.push(Layer::Cells { name: variant.name.into(), cells, colour });
+        chart.layers.push(Layer::Cells { name: variant.name.clone(), cells, colour });
         let (from, to) = (self.x.from, self.x.to);
         for (name, of, border) in self.borders {
             if !of.is_empty() && *of != variant.name {
@@ -277,7 +282,7 @@ fn sweeps_at_border(part: f64, time_step_secs: f64, contraction: f64) -> f64 {
 fn substeps_at_border(count: usize, time_step_secs: f64) -> Result<f64> {
     let mut scene = column_on_line(count);
     if let Some(dem) = VARIANTS.iter().find(|variant| variant.name == "dem") {
-        dem.apply(&mut scene);
+        step_by(dem, &mut scene);
     }
     let critical_secs = scene.simulation()?.critical_time_step_secs().unwrap_or(f64::INFINITY);
     Ok(time_step_secs / critical_secs)

@@ -12,11 +12,13 @@ use std::sync::LazyLock;
 pub use maps::{contraction_of_column, count_of_maps, maps};
 pub use table::{StabilityCell, StabilityTable, StabilityVerdict, picture};
 
+use crate::config::{Config, SceneSource};
 use crate::contact::Numbering;
 use crate::error::{Error, Result};
+use crate::harness::Change;
 use crate::scene::{Preset, Scene};
 use crate::sim::{Simulation, Stepper};
-use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings};
+use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverChanges, SolverSettings};
 
 /// A scene made to break methods, and what is measured on it.
 #[derive(Clone, Copy, Debug)]
@@ -140,56 +142,15 @@ pub static CHALLENGES: [Challenge; 28] = [
         .further(&[2000.0, 10000.0]),
 ];
 
-/// A solver variant that is tried: a method or a stepper, or settings that go together.
-#[derive(Clone, Copy, Debug)]
-pub struct TriedVariant {
-    name: &'static str,
-    change: VariantChange,
-}
+/// The name of the variant that leaves scenes as they are stepped by default.
+const DEFAULT: &str = "default";
 
-#[derive(Clone, Copy, Debug)]
-enum VariantChange {
-    /// As every scene is stepped whose user says nothing.
-    Default,
-    /// The paper's stepper with this method.
-    Method(Method),
-    /// Gauss–Seidel in an order of its own.
-    Order(Ordering),
-    /// A model of friction, by the method that solves it for certain.
-    Model(FrictionModel),
-    /// A stepper that solves no problem by a method.
-    Stepper(Stepper),
-    Preset(Preset),
-}
-
-impl TriedVariant {
-    /// Has a scene stepped so; whatever else it says stays.
-    fn apply(&self, scene: &mut Scene) {
-        let solver = &mut scene.solver;
-        if !matches!(self.change, VariantChange::Default) {
-            sweep_instead(solver);
-        }
-        match self.change {
-            VariantChange::Default => {}
-            VariantChange::Method(method) => solver.method = method,
-            VariantChange::Order(ordering) => {
-                (solver.method, solver.ordering) = (Method::Nsgs, ordering);
-            }
-            VariantChange::Model(friction_model) => {
-                solver.method = Method::InteriorPoint;
-                if scene.physics.friction {
-                    solver.friction_model = friction_model;
-                }
-            }
-            VariantChange::Stepper(stepper) => scene.stepper = stepper,
-            VariantChange::Preset(preset) => preset.apply(scene),
-        }
+/// Has a scene stepped by a variant.
+fn step_by(variant: &Change, scene: &mut Scene) {
+    if variant.name != DEFAULT {
+        sweep_instead(&mut scene.solver);
     }
-
-    /// True of a method or a stepper, not of settings of one.
-    fn is_of_registry(&self) -> bool {
-        matches!(self.change, VariantChange::Method(_) | VariantChange::Stepper(_))
-    }
+    variant.apply(scene);
 }
 
 /// Stops by the change of a sweep where a scene leaves it to the default, so that methods are told apart by what they do
@@ -209,37 +170,44 @@ fn sweep_instead(solver: &mut SolverSettings) {
 
 /// All variants: the default, every method, every stepper without one, every model of friction that neither it nor these
 /// have, and settings that mend a known failure.
-static VARIANTS: LazyLock<Vec<TriedVariant>> = LazyLock::new(|| {
-    use VariantChange::{Default, Method, Model, Order, Preset as Together, Stepper as Step};
-    let methods = METHODS.iter().map(|info| (info.name, Method(info.method)));
-    let steppers = Stepper::ALL.iter().filter(|stepper| !stepper.uses_method());
-    let steppers = steppers.map(|&stepper| (stepper.name(), Step(stepper)));
-    let models = [FrictionModel::Associated, FrictionModel::Desaxce];
-    let models = models.map(|model| (model.name(), Model(model)));
-    let others =
-        [("nsgs bottom-up", Order(Ordering::BottomUp)), ("robust", Together(Preset::Robust))];
-    let default = [("default", Default)].into_iter();
-    let all = default.chain(methods).chain(steppers).chain(models).chain(others);
-    all.map(|(name, change)| TriedVariant { name, change }).collect()
+static VARIANTS: LazyLock<Vec<Change>> = LazyLock::new(|| {
+    let solver = |name, method, ordering, friction_model| {
+        let default = SolverChanges::default();
+        let solver = SolverChanges { method: Some(method), ordering, friction_model, ..default };
+        Change::new(name, Config { solver, ..Config::default() })
+    };
+    let mut all = vec![Change::new(DEFAULT, Config::default())];
+    all.extend(METHODS.iter().map(|info| solver(info.name, info.method, None, None)));
+    for stepper in Stepper::ALL.iter().filter(|stepper| !stepper.uses_method()) {
+        let config = Config { stepper: Some(*stepper), ..Config::default() };
+        all.push(Change::new(stepper.name(), config));
+    }
+    for model in [FrictionModel::Associated, FrictionModel::Desaxce] {
+        all.push(solver(model.name(), Method::InteriorPoint, None, Some(model)));
+    }
+    all.push(solver("nsgs bottom-up", Method::Nsgs, Some(Ordering::BottomUp), None));
+    let source = SceneSource { preset: Some(Preset::Robust), ..SceneSource::default() };
+    all.push(Change::new("robust", Config { source, ..Config::default() }));
+    all
 });
 
 /// One variant at one level of a challenge.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
-    variant: &'static TriedVariant,
+    variant: &'static Change,
     /// The value of the parameter that drives the scene into failure.
     level: f64,
 }
 
 impl Trial {
     fn start(&self, mut scene: Scene) -> Result<Simulation> {
-        self.variant.apply(&mut scene);
+        step_by(self.variant, &mut scene);
         scene.simulation()
     }
 
     /// The same with so many sweeps a step, whatever the variant says of them.
     fn start_within(&self, sweeps: u32, mut scene: Scene) -> Result<Simulation> {
-        self.variant.apply(&mut scene);
+        step_by(self.variant, &mut scene);
         scene.solver.max_sweeps = sweeps;
         scene.simulation()
     }

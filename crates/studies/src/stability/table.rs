@@ -5,9 +5,10 @@ use std::fmt;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{CHALLENGES, Challenge, Trial, TriedVariant, VARIANTS};
+use super::{CHALLENGES, Challenge, Trial, VARIANTS};
 use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
+use crate::harness::Change;
 
 /// How a method did. Later is worse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -128,7 +129,7 @@ impl StabilityTable {
     }
 
     /// What came of a variant on a challenge, level by level.
-    fn levels(&self, challenge: &Challenge, variant: &TriedVariant) -> Vec<&StabilityCell> {
+    fn levels(&self, challenge: &Challenge, variant: &Change) -> Vec<&StabilityCell> {
         let of_both =
             |cell: &&StabilityCell| cell.scene == challenge.name && cell.method == variant.name;
         self.cells.iter().filter(of_both).collect()
@@ -153,7 +154,7 @@ fn cell(challenge: &Challenge, trial: &Trial) -> Result<StabilityCell> {
     let error = challenge.error(trial)?;
     Ok(StabilityCell {
         scene: challenge.name.to_owned(),
-        method: trial.variant.name.to_owned(),
+        method: trial.variant.name.clone(),
         level: trial.level,
         verdict: StabilityVerdict::of(error, challenge.limits),
         error: format!("{error:.1e}"),

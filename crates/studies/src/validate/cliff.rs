@@ -26,6 +26,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             grains, and self-affine as a crack's (A. Abramian et al., Soft Matter 2021, D1SM01148K, whose abstract was \
             read): root mean square off a line through each 12 d of it.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -36,13 +37,12 @@ const TAN_OF_FRICTION: f64 = 0.36;
 /// Z of the columns, about.
 const COORDINATION: f64 = 3.6;
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
-    let (grains, seeds) = if quick { (260, 3) } else { (1_000, 8) };
-    let bonds: &[f64] = if quick {
-        &[0.0, 10.0, 20.0, 40.0, 80.0, 160.0]
-    } else {
-        &[0.0, 8.0, 16.0, 23.0, 32.0, 45.0, 64.0, 90.0, 128.0, 180.0]
-    };
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (grains, seeds) = effort.pick((260, 3), (1_000, 8));
+    let bonds: &[f64] = effort.pick(
+        &[0.0, 10.0, 20.0, 40.0, 80.0, 160.0],
+        &[0.0, 8.0, 16.0, 23.0, 32.0, 45.0, 64.0, 90.0, 128.0, 180.0],
+    );
     seeded(bonds, seeds, |bond, seed| {
         let at = [("bond", bond), ("grains", f64::from(grains)), ("seed", seed as f64)];
         let column = CollapsingColumn { grains: grains as usize, aspect: ASPECT, seed, bond };
@@ -71,58 +71,35 @@ fn standing_from(of_seed: &Measurements) -> f64 {
     (falls * runs[first].at("bond")).sqrt()
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    rank correlation of run-out and Bond | -1 -1 -0.7 | recalled: Abramian et al. 2020, Gans et al. 2023: it falls
+    rank correlation of roughness and Bond, of those that fall | 0.5 1 1 \
+        | read: Abramian et al. 2021: it grows with cohesion
+    exponent of roughness in length, the most cohesive that fall | 0.4 0.67 0.9 \
+        | recalled: crack paths in the plane: 2/3
+    height of the least cohesive cliff that stands, over the bound | 0.2 1 1 | recalled: Mohr, Coulomb: at most 1
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
     let grains = all.first("grains");
     let system = format!("{grains} grains, Bond {}, {}", all.list("bond"), all.seeds());
+    let trend = |runs: &Measurements, reading: &str| {
+        runs.by_seed(|of_seed| {
+            rank_correlation(&of_seed.rising(|case| (case.at("bond"), case.reading(reading))))
+        })
+    };
     let fallen = all.such_that(|case| case.reading("slump") >= STANDS);
-    let roughnesses = fallen.by_seed(|of_seed| {
-        rank_correlation(&of_seed.points(|case| (case.at("bond"), case.reading("roughness"))))
-    });
     let exponents = fallen.by_seed(|of_seed| {
         let most = of_seed.values("bond").last().copied().unwrap_or(f64::NAN);
         of_seed.with("bond", most).reading("roughness_exponent")
     });
-    let (trends, ratios): (Vec<f64>, Vec<f64>) = all
-        .by_seed(|mut of_seed| {
-            of_seed.0.sort_by(|one, other| one.at("bond").total_cmp(&other.at("bond")));
-            let pairs = of_seed.points(|case| (case.at("bond"), case.reading("run_out")));
-            // H₀ = a R₀, R₀ in d from the number of grains.
-            let height =
-                mean(&of_seed.readings("aspect")).mean * half_width(grains as usize, ASPECT);
-            (rank_correlation(&pairs), height / bound(standing_from(&of_seed)))
-        })
-        .into_iter()
-        .unzip();
-    let quantity = |name: &str, values: &[f64], band, source| {
-        PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
-    };
-    let falls = "Abramian et al. 2020, Gans et al. 2023: it falls";
-    vec![
-        PublishedQuantity::correlation(
-            "rank correlation of run-out and Bond",
-            &system,
-            &trends,
-            [-1.0, -1.0, -0.7],
-            (SourceKind::Memory, falls),
-        ),
-        PublishedQuantity::correlation(
-            "rank correlation of roughness and Bond, of those that fall",
-            &system,
-            &roughnesses,
-            [0.5, 1.0, 1.0],
-            (SourceKind::Read, "Abramian et al. 2021: it grows with cohesion"),
-        ),
-        quantity(
-            "exponent of roughness in length, the most cohesive that fall",
-            &exponents,
-            [0.4, 0.67, 0.9],
-            "crack paths in the plane: 2/3",
-        ),
-        quantity(
-            "height of the least cohesive cliff that stands, over the bound",
-            &ratios,
-            [0.2, 1.0, 1.0],
-            "Mohr, Coulomb: at most 1",
-        ),
-    ]
+    let heights = all.by_seed(|mut of_seed| {
+        of_seed.0.sort_by(|one, other| one.at("bond").total_cmp(&other.at("bond")));
+        // H₀ = a R₀, R₀ in d from the number of grains.
+        let height = mean(&of_seed.readings("aspect")).mean * half_width(grains as usize, ASPECT);
+        height / bound(standing_from(&of_seed))
+    });
+    let values = [trend(all, "run_out"), trend(&fallen, "roughness"), exponents, heights];
+    values.map(|values| (system.clone(), values)).into()
 }

@@ -8,7 +8,7 @@
 
 use super::experiment::*;
 use super::fit::rank_correlation;
-use super::shear::{LayerKind, PRESSURE, balance, layers};
+use super::shear::{LayerKind, PRESSURE, imbalances, layers};
 use super::variants::StepVariant;
 use crate::sim::Stepper;
 use crate::statistics::mean;
@@ -23,6 +23,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             force and energy rule the viscosity of cohesive flows (M. Macaulay, P. Rognon, arXiv 2009.12050, 2020, \
             whose abstract was read). Methods that take no driven walls are left out.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -35,9 +36,9 @@ const STRONG: f64 = 30.0;
 const FORCES: [f64; 2] = [3.0, 10.0];
 const ENERGIES: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     let strengths: &[f64] =
-        if quick { &[0.0, WEAK, STRONG] } else { &[0.0, 0.3, WEAK, 3.0, 10.0, STRONG, 60.0] };
+        effort.pick(&[0.0, WEAK, STRONG], &[0.0, 0.3, WEAK, 3.0, 10.0, STRONG, 60.0]);
     let layer = |strength: f64, breaking_energy: Option<f64>| LayerKind {
         at: vec![("strength", strength), ("energy", breaking_energy.unwrap_or(0.0))],
         inertial: INERTIAL,
@@ -50,10 +51,26 @@ fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
         let of_force = |force| ENERGIES.map(|energy| layer(force, Some(energy)));
         kinds.extend(FORCES.into_iter().flat_map(of_force));
     }
-    layers(quick, variant, &kinds)
+    layers(effort, variant, &kinds)
 }
 
-fn judge(measured: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    T/N at η = 1 over that without cohesion | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it
+    φ at η = 1 less that without cohesion | -0.04 -0.01 0 | recalled: Rognon et al. 2006: weak cohesion dilates
+    T/N at η = 30 over that without cohesion | 1.2 2 inf | recalled: Rognon et al. 2006: strong cohesion raises it
+    φ at η = 30 less that without cohesion | -inf -0.1 -0.02 \
+        | recalled: Rognon et al. 2006: strong cohesion dilates further
+    T of the plates: their difference over their sum | -0.05 0 0.05 | exact: a steady flow gains no momentum
+    rank correlation of T/N and the energy of a bond, η = 3 | 0.5 1 1 \
+        | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
+    rank correlation of T/N and the energy of a bond, η = 10 | 0.5 1 1 \
+        | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
+    T/N at η = 10 over that at η = 3, same energies | 1.02 1.3 inf \
+        | read: Macaulay, Rognon 2020: energy and force of a bond rule the viscosity
+";
+
+fn judge(measured: &Measurements) -> Vec<Measured> {
     let all = &measured.with("energy", 0.0);
     let (grains, strengths) = (all.first("grains"), all.list("strength"));
     let system = format!("{grains} grains, η = {strengths}, {}", all.seeds());
@@ -65,71 +82,34 @@ fn judge(measured: &Measurements) -> Vec<PublishedQuantity> {
         })
     };
     let (ratio, difference) = (|with, without| with / without, |with, without| with - without);
-    let quantity = |name: &str, values: Vec<f64>, band, source| {
-        PublishedQuantity::new(name, &system, &values, band, (SourceKind::Memory, source))
-    };
-    let mut quantities = vec![
-        quantity(
-            "T/N at η = 1 over that without cohesion",
-            against(WEAK, "friction", ratio),
-            [0.85, 1.0, 1.2],
-            "Rognon et al. 2006: weak cohesion leaves it",
-        ),
-        quantity(
-            "φ at η = 1 less that without cohesion",
-            against(WEAK, "solid_fraction", difference),
-            [-0.04, -0.01, 0.0],
-            "Rognon et al. 2006: weak cohesion dilates",
-        ),
-        quantity(
-            "T/N at η = 30 over that without cohesion",
-            against(STRONG, "friction", ratio),
-            [1.2, 2.0, f64::INFINITY],
-            "Rognon et al. 2006: strong cohesion raises it",
-        ),
-        quantity(
-            "φ at η = 30 less that without cohesion",
-            against(STRONG, "solid_fraction", difference),
-            [f64::NEG_INFINITY, -0.1, -0.02],
-            "Rognon et al. 2006: strong cohesion dilates further",
-        ),
-        balance(all, "strength", &system),
+    let values = [
+        against(WEAK, "friction", ratio),
+        against(WEAK, "solid_fraction", difference),
+        against(STRONG, "friction", ratio),
+        against(STRONG, "solid_fraction", difference),
+        imbalances(all, "strength"),
     ];
+    let mut quantities = values.map(|values| (system.clone(), values)).to_vec();
     quantities.extend(of_energies(&measured.such_that(|case| case.at("energy") > 0.0)));
     quantities
 }
 
-/// What friction does with the energy of a bond at one force, and with the force at one energy.
-fn of_energies(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The change of friction with the energy of a bond at one force, and with the force at one energy.
+fn of_energies(all: &Measurements) -> Vec<Measured> {
     if all.0.is_empty() {
         return Vec::new();
     }
     let system =
         format!("{} grains, E = {}, {}", all.first("grains"), all.list("energy"), all.seeds());
-    let source =
-        (SourceKind::Read, "Macaulay, Rognon 2020: energy and force of a bond rule the viscosity");
-    let [weak, strong] = FORCES;
-    let of_force = |force: f64| {
-        let trends = all.with("strength", force).by_seed(|of_seed| {
+    let [weak, strong] = FORCES.map(|force| {
+        all.with("strength", force).by_seed(|of_seed| {
             rank_correlation(&of_seed.points(|case| (case.at("energy"), case.reading("friction"))))
-        });
-        let name = format!("rank correlation of T/N and the energy of a bond, η = {force}");
-        PublishedQuantity::correlation(name, &system, &trends, [0.5, 1.0, 1.0], source)
-    };
-    let ratios = all.by_seed(|of_seed| {
-        let mean_friction =
-            |force| mean(&of_seed.with("strength", force).readings("friction")).mean;
-        mean_friction(strong) / mean_friction(weak)
+        })
     });
-    vec![
-        of_force(weak),
-        of_force(strong),
-        PublishedQuantity::new(
-            format!("T/N at η = {strong} over that at η = {weak}, same energies"),
-            &system,
-            &ratios,
-            [1.02, 1.3, f64::INFINITY],
-            source,
-        ),
-    ]
+    let ratios = all.by_seed(|of_seed| {
+        let [weak, strong] =
+            FORCES.map(|force| mean(&of_seed.with("strength", force).readings("friction")).mean);
+        strong / weak
+    });
+    [weak, strong, ratios].map(|values| (system.clone(), values)).into()
 }

@@ -24,6 +24,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             the two sources differ by 2, and those of run-out in channels with the material (N. J. Balmforth, R. R. \
             Kerswell, J. Fluid Mech. 538, 399, 2005, whose abstract was read): so each source has a band of its own.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -39,13 +40,10 @@ const FLOOR: f64 = 0.37;
 /// Windows over which the surface of a heap is held against a line, in diameters.
 const WINDOWS: [f64; 2] = [4.0, 12.0];
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
-    let (grains, seeds) = if quick { (260, 4) } else { (2_000, 8) };
-    let aspects: &[f64] = if quick {
-        &[0.5, 1.0, 2.0, 4.0, 8.0]
-    } else {
-        &[0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0, 6.0, 8.0]
-    };
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (grains, seeds) = effort.pick((260, 4), (2_000, 8));
+    let aspects: &[f64] =
+        effort.pick(&[0.5, 1.0, 2.0, 4.0, 8.0], &[0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0, 6.0, 8.0]);
     seeded(aspects, seeds, |aspect, seed| {
         let at = [("aspect", aspect), ("grains", f64::from(grains)), ("seed", seed as f64)];
         let column = CollapsingColumn { grains: grains as usize, aspect, seed, bond: 0.0 };
@@ -151,7 +149,19 @@ fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     [0.5 * (left + right), top]
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    run-out over a, a ≤ 2, simulated | 1.9 2.5 3.1 | recalled: Staron, Hinch 2005: 2.5
+    run-out over a, a ≤ 2, in a channel | 0.9 1.2 1.5 | recalled: Lube et al. 2005: 1.2
+    exponent of run-out in a, a ≥ 2 | 0.55 0.7 0.9 | recalled: Staron, Hinch 2005: 0.7; Lajeunesse et al. 2005: 2/3
+    factor of run-out, a ≥ 2, simulated | 2.4 3.25 4.1 | recalled: Staron, Hinch 2005: 3.25
+    factor of run-out, a ≥ 2, in a channel | 1.4 1.9 2.4 | recalled: Lube et al. 2005: 1.9
+    exponent of final height in a, a ≥ 1 | 0.25 0.35 0.5 \
+        | recalled: Staron, Hinch 2005: 0.35; Lajeunesse et al. 2005: 1/3
+    factor of final height, a ≥ 1 | 0.5 0.65 0.8 | recalled: Staron, Hinch 2005: 0.65
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
     let (grains, aspects) = (all.first("grains"), all.list("aspect"));
     let system = format!("{grains} grains, a = {aspects}, {}", all.seeds());
     // Run-out over a of the columns of each seed that are not slender.
@@ -160,7 +170,7 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
         let ratios = low.iter().map(|case| case.reading("run_out") / case.reading("aspect"));
         mean(&ratios.collect::<Vec<_>>()).mean
     });
-    // Exponents, and what the law has at a = 1, of the columns of each seed that are at least so slender.
+    // Exponents, and the values of the law at a = 1, of the columns of each seed that are at least so slender.
     let power_laws = |reading: &str, least: f64| -> (Vec<f64>, Vec<f64>) {
         let law = |of_seed: Measurements| {
             let slender = of_seed.such_that(|case| case.at("aspect") >= least);
@@ -168,53 +178,9 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
         };
         all.by_seed(law).into_iter().unzip()
     };
-    let quantity = |name: &str, values: &[f64], band, source| {
-        PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
-    };
-    let (high_exponents, high_factors) = power_laws("run_out", LINEAR_TO);
+    let (exponents, factors) = power_laws("run_out", LINEAR_TO);
     let (height_exponents, height_factors) = power_laws("height", 1.0);
-    vec![
-        quantity(
-            "run-out over a, a ≤ 2, simulated",
-            &low_factors,
-            [1.9, 2.5, 3.1],
-            "Staron, Hinch 2005: 2.5",
-        ),
-        quantity(
-            "run-out over a, a ≤ 2, in a channel",
-            &low_factors,
-            [0.9, 1.2, 1.5],
-            "Lube et al. 2005: 1.2",
-        ),
-        quantity(
-            "exponent of run-out in a, a ≥ 2",
-            &high_exponents,
-            [0.55, 0.7, 0.9],
-            "Staron, Hinch 2005: 0.7; Lajeunesse et al. 2005: 2/3",
-        ),
-        quantity(
-            "factor of run-out, a ≥ 2, simulated",
-            &high_factors,
-            [2.4, 3.25, 4.1],
-            "Staron, Hinch 2005: 3.25",
-        ),
-        quantity(
-            "factor of run-out, a ≥ 2, in a channel",
-            &high_factors,
-            [1.4, 1.9, 2.4],
-            "Lube et al. 2005: 1.9",
-        ),
-        quantity(
-            "exponent of final height in a, a ≥ 1",
-            &height_exponents,
-            [0.25, 0.35, 0.5],
-            "Staron, Hinch 2005: 0.35; Lajeunesse et al. 2005: 1/3",
-        ),
-        quantity(
-            "factor of final height, a ≥ 1",
-            &height_factors,
-            [0.5, 0.65, 0.8],
-            "Staron, Hinch 2005: 0.65",
-        ),
-    ]
+    let (low, high) = (low_factors.clone(), factors.clone());
+    let values = [low, low_factors, exponents, high, factors, height_exponents, height_factors];
+    values.map(|values| (system.clone(), values)).into()
 }

@@ -38,6 +38,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             theory in the plane (Enskog's collision rate), with what is lost at the walls, which are as inelastic as \
             the discs.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -50,8 +51,8 @@ const TIMES: f64 = 6.0;
 /// Moments at which its temperature is read.
 const MOMENTS: u32 = 120;
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
-    let (discs, seeds) = if quick { (400, 4) } else { (2_000, 10) };
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (discs, seeds) = effort.pick((400, 4), (2_000, 10));
     let count = f64::from(discs);
     let cost = count * TIMES * time_secs(count) / variant.time_step_secs;
     seeded(&[count], seeds, |count, seed| {
@@ -130,17 +131,15 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
     Ok(run.with([("exponent", exponent), ("time", 1.0 / slope(&roots) / expected)]))
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    exponent p of T = T₀ (1 + t/τ)^−p | 1.85 2 2.15 | exact: Haff 1983
+    τ over that of kinetic theory | 0.9 1 1.1 | recalled: Enskog's collision rate, Henderson 1975, walls included
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
     let system = format!("{} discs, {} runs", all.first("discs"), all.0.len());
-    let quantity = |name: &str, reading, band, source| {
-        PublishedQuantity::new(name, &system, &all.readings(reading), band, source)
-    };
-    let haff = (SourceKind::Exact, "Haff 1983");
-    let rate = (SourceKind::Memory, "Enskog's collision rate, Henderson 1975, walls included");
-    vec![
-        quantity("exponent p of T = T₀ (1 + t/τ)^−p", "exponent", [1.85, 2.0, 2.15], haff),
-        quantity("τ over that of kinetic theory", "time", [0.9, 1.0, 1.1], rate),
-    ]
+    ["exponent", "time"].map(|reading| (system.clone(), all.readings(reading))).into()
 }
 
 #[cfg(test)]

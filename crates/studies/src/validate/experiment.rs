@@ -1,10 +1,8 @@
 //! What an experiment is: cases that are computed, and published quantities that are held against what they come to.
 
-use serde::{Deserialize, Serialize};
-
 use super::variants::StepVariant;
 use crate::error::Result;
-use crate::number;
+pub(super) use crate::harness::{Effort, MeasuredCase, Measurements, RunReadings, named};
 use crate::statistics::{Mean, mean};
 
 pub(super) struct Experiment {
@@ -14,16 +12,24 @@ pub(super) struct Experiment {
     /// What is done, and after whom.
     pub about: &'static str,
     pub cases: ExperimentCases,
-    /// What the cases of one solver variant come to.
-    pub judge: fn(&Measurements) -> Vec<PublishedQuantity>,
+    /// The published quantities, a row each ([`PublishedQuantity::new`]).
+    pub published: &'static str,
+    /// The values of each row that the cases of one solver variant measured.
+    pub judge: fn(&Measurements) -> Vec<Measured>,
+}
+
+impl Experiment {
+    pub(super) fn rows(&self) -> impl Iterator<Item = &'static str> {
+        self.published.lines().filter(|row| !row.trim().is_empty())
+    }
 }
 
 /// The cases of an experiment, those of a quick pass where that is asked for.
 pub(super) enum ExperimentCases {
     /// It is about methods of its own, whichever are chosen.
-    Own(fn(bool) -> Vec<ExperimentCase>),
+    Own(fn(Effort) -> Vec<ExperimentCase>),
     /// It is computed by each variant that is chosen, but for those by which it has no cases.
-    Chosen(fn(bool, StepVariant) -> Vec<ExperimentCase>),
+    Chosen(fn(Effort, StepVariant) -> Vec<ExperimentCase>),
 }
 
 pub(super) struct ExperimentCase {
@@ -54,125 +60,26 @@ pub(super) fn seeded<T: Copy>(
     values.iter().flat_map(of).map(|(value, seed)| case(value, seed)).collect()
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Reading {
-    pub name: String,
-    #[serde(with = "number")]
-    pub value: f64,
-}
-
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct RunReadings {
-    pub readings: Vec<Reading>,
-    pub simulated_secs: f64,
-    pub steps: u64,
-    /// Steps that were not solved as asked. With a number of sweeps nothing is asked but those.
-    pub unsolved_steps: u64,
-    pub lost_grains: u32,
-    /// True if its state was no longer finite; it has no readings then.
-    pub blew_up: bool,
-}
-
-impl RunReadings {
-    /// A number that was measured; NaN where there is none of that name.
-    pub(super) fn reading(&self, name: &str) -> f64 {
-        let mut readings = self.readings.iter();
-        readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
-    }
-}
-
-pub(super) fn named<const COUNT: usize>(readings: [(&str, f64); COUNT]) -> Vec<Reading> {
-    readings.map(|(name, value)| Reading { name: name.to_owned(), value }).into()
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct MeasuredCase {
-    pub at: Vec<(&'static str, f64)>,
-    pub run: RunReadings,
-    pub wall_secs: f64,
-}
-
-impl MeasuredCase {
-    /// A number that tells the case from others; NaN where there is none of that name.
-    pub(super) fn at(&self, name: &str) -> f64 {
-        self.at.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
-    }
-
-    /// A number that was measured; NaN where there is none of that name.
-    pub(super) fn reading(&self, name: &str) -> f64 {
-        self.run.reading(name)
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Measurements<'a>(pub Vec<&'a MeasuredCase>);
-
-impl<'a> Measurements<'a> {
-    /// The different values of a number of the cases, rising.
-    pub(super) fn values(&self, name: &str) -> Vec<f64> {
-        let mut values: Vec<f64> = self.0.iter().map(|case| case.at(name)).collect();
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        values
-    }
-
-    pub(super) fn list(&self, name: &str) -> String {
-        self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
-    }
-
-    /// A number of the first case; 0 where there is no case.
-    pub(super) fn first(&self, name: &str) -> f64 {
-        self.0.first().map_or(0.0, |case| case.at(name))
-    }
-
-    pub(super) fn such_that(&self, holds: impl Fn(&MeasuredCase) -> bool) -> Self {
-        Self(self.0.iter().copied().filter(|case| holds(case)).collect())
-    }
-
-    pub(super) fn with(&self, name: &str, value: f64) -> Self {
-        self.such_that(|case| case.at(name) == value)
-    }
-
-    pub(super) fn by_seed<T>(&self, of: impl Fn(Self) -> T) -> Vec<T> {
-        self.values("seed").into_iter().map(|seed| of(self.with("seed", seed))).collect()
-    }
-
-    pub(super) fn readings(&self, name: &str) -> Vec<f64> {
-        self.0.iter().map(|case| case.reading(name)).collect()
-    }
-
-    /// A reading of the first case; NaN where there is no case.
-    pub(super) fn reading(&self, name: &str) -> f64 {
-        self.0.first().map_or(f64::NAN, |case| case.reading(name))
-    }
-
-    pub(super) fn points(&self, point: impl Fn(&MeasuredCase) -> (f64, f64)) -> Vec<(f64, f64)> {
-        self.0.iter().map(|case| point(case)).collect()
-    }
-
-    pub(super) fn seeds(&self) -> String {
-        format!("{} seeds", self.values("seed").len())
-    }
-}
-
 /// Where a number comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SourceKind {
     /// Taken from the source, or from a review that quotes it.
     Read,
-    /// Recalled: the source was not at hand, so the band is generous and stands for a trend alone.
+    /// Recalled: nobody has looked the number up, so that it gets no verdict.
     Memory,
-    /// Follows from what the scene is, by approximations that the experiment names.
+    /// Follows from the scene, by approximations that the experiment names.
     Derived,
-    /// Follows from what the scene is, without any.
+    /// Follows from the scene, without any.
     Exact,
 }
 
 impl SourceKind {
+    const ALL: [Self; 4] = [Self::Read, Self::Memory, Self::Derived, Self::Exact];
+
     pub(super) const fn words(self) -> &'static str {
         match self {
             Self::Read => "read",
-            Self::Memory => "memory",
+            Self::Memory => "recalled",
             Self::Derived => "derived",
             Self::Exact => "exact",
         }
@@ -186,6 +93,8 @@ pub(super) enum Agreement {
     Differs,
     /// Part of it does, or there is none.
     NotDecided,
+    /// The published number was recalled.
+    NoVerdict,
 }
 
 impl Agreement {
@@ -194,52 +103,50 @@ impl Agreement {
             Self::Agrees => "agrees",
             Self::Differs => "differs",
             Self::NotDecided => "not decided",
+            Self::NoVerdict => "no verdict",
         }
     }
 }
 
-/// A published quantity, and what was measured of it by one solver variant.
+/// The values of a published quantity that one solver variant measured: the system, and a value for each seed or run.
+pub(super) type Measured = (String, Vec<f64>);
+
+/// A published quantity, and its mean as one solver variant measured it.
 #[derive(Clone, Debug)]
 pub(super) struct PublishedQuantity {
-    pub name: String,
+    pub name: &'static str,
     pub system: String,
-    /// The published value, or the middle of what was published.
+    /// The published value, or the middle of the published values.
     pub published: f64,
-    /// What is within counts as the same: the spread of what was published, or what the experiment's size and its
-    /// idealisations leave open.
+    /// Values within it count as the same: the spread of published values, or the uncertainty from the experiment's size
+    /// and its idealisations.
     pub band: [f64; 2],
-    pub provenance: SourceKind,
+    pub kind: SourceKind,
     /// Who says so, or how it follows.
     pub source: &'static str,
     pub measured: Mean,
 }
 
 impl PublishedQuantity {
-    /// Independent values that were measured, against the low end of a band, the published value, and the high end.
-    pub(super) fn new(
-        name: impl Into<String>,
-        system: &str,
-        values: &[f64],
-        [low, published, high]: [f64; 3],
-        (provenance, source): (SourceKind, &'static str),
-    ) -> Self {
-        let (name, system) = (name.into(), system.to_owned());
-        let (band, measured) = ([low, high], mean(values));
-        Self { name, system, published, band, provenance, source, measured }
-    }
-
-    /// The mean rank correlation of runs that are apart from each other. None is larger than 1, so the interval ends there.
-    pub(super) fn correlation(
-        name: impl Into<String>,
-        system: &str,
-        values: &[f64],
-        band: [f64; 3],
-        source: (SourceKind, &'static str),
-    ) -> Self {
-        let mut quantity = Self::new(name, system, values, band, source);
-        let Mean { low, high, .. } = &mut quantity.measured;
-        (*low, *high) = (low.max(-1.0), high.min(1.0));
-        quantity
+    /// The quantity of a row of a table: name | low end of the band, published value, high end | kind of source: source.
+    /// No correlation is larger than 1, so that the interval of a `rank correlation` ends there. None if the row says
+    /// something else.
+    pub(super) fn new(row: &'static str, (system, values): Measured) -> Option<Self> {
+        let mut cells = row.split(" | ").map(str::trim);
+        let (name, numbers, (kind, source)) =
+            (cells.next()?, cells.next()?, cells.next()?.split_once(": ")?);
+        let numbers: Vec<f64> = numbers
+            .split_whitespace()
+            .map(str::parse)
+            .collect::<std::result::Result<_, _>>()
+            .ok()?;
+        let &[low, published, high] = &numbers[..] else { return None };
+        let kind = SourceKind::ALL.into_iter().find(|known| known.words() == kind)?;
+        let mut measured = mean(&values);
+        if name.starts_with("rank correlation") {
+            (measured.low, measured.high) = (measured.low.max(-1.0), measured.high.min(1.0));
+        }
+        Some(Self { name, system, published, band: [low, high], kind, source, measured })
     }
 
     /// Relative deviation of the mean from the published value; none where that is 0.
@@ -250,7 +157,9 @@ impl PublishedQuantity {
     /// How the two compare, where all runs are sound.
     pub(super) fn verdict(&self) -> Agreement {
         let (Mean { low, high, .. }, band) = (self.measured, self.band);
-        if low >= band[0] && high <= band[1] {
+        if self.kind == SourceKind::Memory {
+            Agreement::NoVerdict
+        } else if low >= band[0] && high <= band[1] {
             Agreement::Agrees
         } else if high < band[0] || low > band[1] {
             Agreement::Differs
@@ -265,8 +174,8 @@ mod tests {
     use super::*;
 
     fn quantity(values: &[f64]) -> PublishedQuantity {
-        let of = (SourceKind::Exact, "arithmetic");
-        PublishedQuantity::new("two", "", values, [1.9, 2.0, 2.1], of)
+        let row = "two | 1.9 2 2.1 | exact: arithmetic";
+        PublishedQuantity::new(row, (String::new(), values.to_vec())).expect("a row")
     }
 
     #[test]
@@ -281,16 +190,20 @@ mod tests {
         assert_eq!(quantity(&[2.0]).verdict(), Agreement::NotDecided);
         assert_eq!(quantity(&[f64::NAN, 2.0]).verdict(), Agreement::NotDecided);
         assert!((quantity(&[2.2, 2.2]).error().expect("a value") - 0.1).abs() < 1e-12);
-        let of = (SourceKind::Exact, "arithmetic");
-        let of_none = PublishedQuantity::new("none", "", &[0.01, 0.02], [-0.1, 0.0, 0.1], of);
+        let row = "none | -0.1 0 0.1 | exact: arithmetic";
+        let values = || (String::new(), vec![0.01, 0.02]);
+        let of_none = PublishedQuantity::new(row, values()).expect("a row");
         assert_eq!(of_none.error(), None);
+        let recalled = "none | -0.1 0 0.1 | recalled: arithmetic";
+        let recalled = PublishedQuantity::new(recalled, values()).expect("a row");
+        assert_eq!(recalled.verdict(), Agreement::NoVerdict);
     }
 
     #[test]
     fn no_correlation_is_beyond_1() {
         let of = |values: &[f64]| {
-            let source = (SourceKind::Memory, "it grows");
-            PublishedQuantity::correlation("trend", "", values, [0.5, 1.0, 1.0], source)
+            let row = "rank correlation | 0.5 1 1 | read: it grows";
+            PublishedQuantity::new(row, (String::new(), values.to_vec())).expect("a row")
         };
         // Student's interval would reach 1.27.
         let few = of(&[1.0, 1.0, 0.5, 1.0]);
@@ -299,5 +212,20 @@ mod tests {
         assert_eq!(of(&[0.9, 1.0, 1.0, 0.95]).verdict(), Agreement::Agrees);
         assert_eq!(of(&[-1.0, -1.0, -0.95, -1.0]).verdict(), Agreement::Differs);
         assert_eq!(of(&[-1.0, -1.0, -0.5, -1.0]).measured.low, -1.0);
+    }
+
+    #[test]
+    fn tables_have_a_row_for_each_quantity() {
+        // Some quantities are of layers whose bonds have an energy.
+        let at = vec![("energy", 1.0)];
+        let case = MeasuredCase { at, run: RunReadings::default(), wall_secs: 0.0 };
+        for experiment in &super::super::EXPERIMENTS {
+            let judged = (experiment.judge)(&Measurements(vec![&case])).len();
+            let rows: Vec<_> = experiment.rows().collect();
+            assert_eq!(judged, rows.len(), "{}", experiment.name);
+            for row in rows {
+                assert!(PublishedQuantity::new(row, Measured::default()).is_some(), "{row}");
+            }
+        }
     }
 }

@@ -29,6 +29,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             slowly, and weighs what it carries meanwhile. H. A. Janssen 1895: the share (λ/H)(1 − e^(−H/λ)) of the \
             weight, λ = W/(2 μ_w K), K the pressure across over that along.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -47,13 +48,10 @@ const SPEED: f64 = 0.02;
 const HIGH: f64 = 5.0;
 const HALF_AS_HIGH: f64 = 2.5;
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
-    let seeds = if quick { 4 } else { 12 };
-    let heights: &[f64] = if quick {
-        &[1.0, HALF_AS_HIGH, HIGH]
-    } else {
-        &[0.5, 1.0, 1.5, HALF_AS_HIGH, 3.5, HIGH, 7.0, 10.0]
-    };
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
+    let seeds = effort.pick(4, 12);
+    let heights: &[f64] = effort
+        .pick(&[1.0, HALF_AS_HIGH, HIGH], &[0.5, 1.0, 1.5, HALF_AS_HIGH, 3.5, HIGH, 7.0, 10.0]);
     seeded(heights, seeds, |height, seed| {
         let grains = (height * GRAINS_OF_SQUARE).round();
         let at = [("height", height), ("grains", grains), ("seed", seed as f64)];
@@ -115,7 +113,15 @@ fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     [length, misfit(length)]
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    K of Janssen's λ = W/(2 μ_w K) | 0.35 0.7 1.1 | recalled: Janssen 1895; K of 0.4 … 1 for grains
+    deviation of the share from Janssen's law, r.m.s. | 0 0.03 0.1 | recalled: Janssen 1895
+    load of a filling 5 W high over that of one half as high | 0.8 1.1 1.5 \
+        | recalled: Janssen 1895 with K = 0.7: 1.1; without friction 2
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
     let system = format!("{} grains in 8 d, {}", all.list("grains"), all.seeds());
     let (ratios, misfits): (Vec<f64>, Vec<f64>) = all
         .by_seed(|of_seed| {
@@ -129,29 +135,7 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
         let load = |height| of_seed.with("height", height).reading("load");
         load(HIGH) / load(HALF_AS_HIGH)
     });
-    let quantity = |name: &str, values: &[f64], band, source| {
-        PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
-    };
-    vec![
-        quantity(
-            "K of Janssen's λ = W/(2 μ_w K)",
-            &ratios,
-            [0.35, 0.7, 1.1],
-            "Janssen 1895; K of 0.4 … 1 for grains",
-        ),
-        quantity(
-            "deviation of the share from Janssen's law, r.m.s.",
-            &misfits,
-            [0.0, 0.03, 0.1],
-            "Janssen 1895",
-        ),
-        quantity(
-            "load of a filling 5 W high over that of one half as high",
-            &gains,
-            [0.8, 1.1, 1.5],
-            "Janssen 1895 with K = 0.7: 1.1; without friction 2",
-        ),
-    ]
+    [ratios, misfits, gains].map(|values| (system.clone(), values)).into()
 }
 
 #[cfg(test)]

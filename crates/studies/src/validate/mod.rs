@@ -35,11 +35,10 @@ use clap::builder::PossibleValuesParser;
 use self::experiment::{Experiment, ExperimentCases};
 use self::runs::run_all;
 use self::variants::step_variants;
-use super::machine::Machine;
 use crate::config::parser_of;
 use crate::error::Result;
-use crate::output::{check_writable, print_line, print_text, remove_drafts, write_file};
-use crate::report::write_sheet;
+use crate::harness::{Bench, Effort};
+use crate::output::print_text;
 use crate::sim::Stepper;
 use crate::solver::Method;
 
@@ -98,8 +97,8 @@ pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
     let started = Instant::now();
     let ValidateOptions { experiments, out, quick, stepper, .. } = options;
     let ValidateOptions { methods, time_steps_secs, sweeps, tolerances, .. } = options;
+    let effort = Effort::new(*quick);
     let variants = step_variants(*stepper, methods, time_steps_secs, sweeps, tolerances)?;
-    check_writable("out", out)?;
     let wanted: Vec<&'static Experiment> = EXPERIMENTS
         .iter()
         .filter(|one| experiments.is_empty() || experiments.iter().any(|name| name == one.name))
@@ -107,18 +106,12 @@ pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
             *stepper == Stepper::Moreau || matches!(one.cases, ExperimentCases::Chosen(_))
         })
         .collect();
-    let machine = Machine::this(version)?;
-    let runner = machine.runner(out, *quick, "validation")?;
-    let ran = run_all(&wanted, &variants, *quick, &runner)?;
-    let sheet = report::sheet(&ran, &machine.words());
-    write_sheet(out, "errors", &sheet, &machine.command)?;
-    let table = report::table(&ran);
-    write_file(&out.join("quantities.csv"), &table.to_csv()?)?;
-    let text = report::markdown(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
-    let path = out.join("report.md");
-    write_file(&path, text.as_bytes())?;
-    remove_drafts(out)?;
+    let bench = Bench::new(out, effort, version)?;
+    let ran = run_all(&wanted, &variants, effort, &bench.runner("validation")?)?;
+    let machine = bench.machine.words();
+    let sheet = report::sheet(&ran, &machine);
+    bench.write(("errors", &sheet), [&report::table(&ran)], &bench.machine.command)?;
+    let text = report::markdown(&ran, effort, &machine, started.elapsed().as_secs_f64());
     print_text(&text);
-    print_line(path.display());
-    Ok(())
+    bench.finish("report.md", &text)
 }

@@ -25,6 +25,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             from walls, contacts of the discs that are no rattlers, and the tail P(f) ∝ exp(−βf) of the normal forces \
             above their mean.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -37,8 +38,8 @@ const MARGIN: f64 = 2.5;
 /// Height of the layers in which mean forces are taken, in diameters.
 const LAYER: f64 = 3.0;
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
-    let (discs, width, seeds) = if quick { (300, 18.0, 6) } else { (2_000, 45.0, 12) };
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (discs, width, seeds) = effort.pick((300, 18.0, 6), (2_000, 45.0, 12));
     let cost = f64::from(discs) * 30.0 / variant.time_step_secs;
     seeded(&[0.0, LARGE_FRICTION], seeds, |friction, seed| {
         let at = [("friction", friction), ("discs", f64::from(discs)), ("seed", seed as f64)];
@@ -113,25 +114,27 @@ fn tail(bearing: &[&ContactState]) -> f64 {
     1.0 / mean(&beyond).mean
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    φ without friction | 0.82 0.84 0.86 | read: reported for nearly monodisperse discs
+    Z without friction | 3.9 4 4.1 | read: 2D = 4: isostatic
+    Z at μ = 10 | 2.95 3.1 3.4 | recalled: → 3 as μ → ∞
+    β without friction | 1.2 1.6 2 | recalled: 1.4 (Radjai et al. 1996) … 1.8 (experiment)
+    β at μ = 10 | 1.2 1.6 2 | recalled: 1.4 (Radjai et al. 1996) … 1.8 (experiment)
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
     let runs = all.with("friction", 0.0).0.len();
     let system = format!("{} discs, {runs} runs", all.first("discs"));
-    let quantity = |name: &str, friction, reading, band, source| {
-        let values = all.with("friction", friction).readings(reading);
-        PublishedQuantity::new(name, &system, &values, band, source)
-    };
-    let reported = (SourceKind::Read, "reported for nearly monodisperse discs");
-    let isostatic = (SourceKind::Read, "2D = 4: isostatic");
-    let least = (SourceKind::Memory, "→ 3 as μ → ∞");
-    let tail = (SourceKind::Memory, "1.4 (Radjai et al. 1996) … 1.8 (experiment)");
-    let (dense, tails) = ([0.82, 0.84, 0.86], [1.2, 1.6, 2.0]);
-    vec![
-        quantity("φ without friction", 0.0, "solid_fraction", dense, reported),
-        quantity("Z without friction", 0.0, "coordination", [3.9, 4.0, 4.1], isostatic),
-        quantity("Z at μ = 10", LARGE_FRICTION, "coordination", [2.95, 3.1, 3.4], least),
-        quantity("β without friction", 0.0, "tail", tails, tail),
-        quantity("β at μ = 10", LARGE_FRICTION, "tail", tails, tail),
-    ]
+    let values = [
+        (0.0, "solid_fraction"),
+        (0.0, "coordination"),
+        (LARGE_FRICTION, "coordination"),
+        (0.0, "tail"),
+        (LARGE_FRICTION, "tail"),
+    ];
+    let of = |(friction, reading)| all.with("friction", friction).readings(reading);
+    values.map(|row| (system.clone(), of(row))).into()
 }
 
 #[cfg(test)]

@@ -6,8 +6,7 @@ use super::experiment::{Agreement, PublishedQuantity};
 use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
-use crate::report::ReportTable;
-use crate::solver::Method;
+use crate::harness::{Effort, ReportTable, distinct};
 use crate::statistics::mean;
 
 const LEAST_ERROR: f64 = 1e-3;
@@ -34,12 +33,12 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let mut rows = Vec::new();
     for runs in all {
         for (quantity, verdict) in runs.judged() {
-            let PublishedQuantity { name, system, published, band, provenance, source, measured } =
+            let PublishedQuantity { name, system, published, band, kind, source, measured } =
                 &quantity;
             let [low, high] = *band;
             let numbers = [*published, low, high, measured.mean, measured.low, measured.high];
-            let mut row = vec![runs.experiment.name.to_owned(), runs.words(), name.clone()];
-            row.extend([system.clone(), (*source).to_owned(), provenance.words().to_owned()]);
+            let mut row = vec![runs.experiment.name.to_owned(), runs.words(), (*name).to_owned()];
+            row.extend([system.clone(), (*source).to_owned(), kind.words().to_owned()]);
             row.extend(numbers.map(|number| number.to_string()));
             row.extend([measured.count.to_string(), verdict.words().to_owned()]);
             row.extend(
@@ -57,13 +56,12 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let columns = "experiment way quantity system source provenance published published_low published_high measured \
                    measured_low measured_high samples verdict error simulated_secs_per_sec wall_secs \
                    share_of_unsolved_steps";
-    let columns = columns.split(' ').collect();
-    ReportTable { name: "quantities".into(), columns, rows }
+    ReportTable::new("quantities", columns, rows)
 }
 
-pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs: f64) -> String {
+pub(super) fn markdown(all: &[ExperimentRuns], effort: Effort, machine: &str, secs: f64) -> String {
     let mut text = "# Published experiments\n\n".to_owned();
-    if quick {
+    if effort == Effort::Quick {
         text.push_str("Quick pass: smaller systems, and fewer of them, than in the full one.\n\n");
     }
     // Writing to a string cannot fail.
@@ -72,8 +70,8 @@ pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs:
         "{machine}; {secs:.0} s, runs that were there before not counted.\n\nIntervals hold the true value in 95 % \
          of samples. A quantity agrees where its whole interval lies in the published band and differs where all of \
          it lies outside; the rest is not decided. Where a number comes from: *read* in the source or a review that \
-         quotes it; *memory*: recalled and not looked up yet, so that the band is generous and tests a trend alone; \
-         *derived* from what the scene is, by approximations that are named; *exact*.\n\n![errors](errors.png)\n",
+         quotes it; *recalled* and not looked up, so that it gets no verdict; *derived* from the scene, by approximations that are \
+         named; *exact*.\n\n![errors](errors.png)\n",
     );
     text.push_str(&summary(all));
     let mut last = "";
@@ -93,11 +91,12 @@ fn summary(all: &[ExperimentRuns]) -> String {
         all.iter().flat_map(ExperimentRuns::judged).map(|(_, verdict)| verdict).collect();
     let count = |verdict| verdicts.iter().filter(|&&one| one == verdict).count();
     format!(
-        "\nOf {} quantities {} agree, {} differ and {} are not decided.\n",
+        "\nOf {} quantities {} agree, {} differ and {} are not decided; {} were recalled and have no verdict.\n",
         verdicts.len(),
         count(Agreement::Agrees),
         count(Agreement::Differs),
-        count(Agreement::NotDecided)
+        count(Agreement::NotDecided),
+        count(Agreement::NoVerdict)
     )
 }
 
@@ -123,14 +122,13 @@ fn of_variant(runs: &ExperimentRuns) -> String {
          |---|---|---|---|---|---|---|---|\n",
     );
     for (quantity, verdict) in runs.judged() {
-        let PublishedQuantity { name, system, published, band, provenance, source, measured } =
-            &quantity;
+        let PublishedQuantity { name, system, published, band, kind, source, measured } = &quantity;
         let _ = writeln!(
             text,
             "| {name} | {system} | {} | {} | {}: {source} | {} | {} | **{}** |",
             short(*published),
             ends(band[0], band[1]),
-            provenance.words(),
+            kind.words(),
             short(measured.mean),
             ends(measured.low, measured.high),
             verdict.words()
@@ -141,16 +139,8 @@ fn of_variant(runs: &ExperimentRuns) -> String {
 
 /// Draws a point for each experiment and variant: how far off its quantities are, and how fast it was.
 pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
-    let mut variants: Vec<StepVariant> = all.iter().filter_map(|runs| runs.variant).collect();
-    let mut seen = Vec::new();
-    variants.retain(|variant| {
-        !seen.contains(variant) && {
-            seen.push(*variant);
-            true
-        }
-    });
-    let mut names: Vec<&str> = all.iter().map(|runs| runs.experiment.name).collect();
-    names.dedup();
+    let variants = distinct(all.iter().filter_map(|runs| runs.variant));
+    let names = distinct(all.iter().map(|runs| runs.experiment.name));
     let count = names.len() as f64;
     let numbers = |number: fn(&ExperimentRuns) -> f64| {
         let numbers = all.iter().map(number).filter(|number| number.is_finite());
@@ -204,12 +194,7 @@ fn error(runs: &ExperimentRuns) -> f64 {
 
 /// A colour a method and time step; discs for sweeps and rings for residuals, the larger the more work.
 fn look_of(variant: &StepVariant, variants: &[StepVariant]) -> (String, Rgb, Look) {
-    let mut kinds: Vec<(Method, f64)> = Vec::new();
-    for one in variants {
-        if !kinds.contains(&(one.method, one.time_step_secs)) {
-            kinds.push((one.method, one.time_step_secs));
-        }
-    }
+    let kinds = distinct(variants.iter().map(|one| (one.method, one.time_step_secs)));
     let kind = (variant.method, variant.time_step_secs);
     let index = kinds.iter().position(|one| *one == kind).unwrap_or_default();
     let budgets = variants.iter().filter(|one| (one.method, one.time_step_secs) == kind);

@@ -23,6 +23,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             surface. Scene incline: the tilt at which the centre of mass has gone half a diameter along the bottom. \
             Both without and with cohesion, μ = 0.5.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -34,9 +35,9 @@ const STEADY_SECS: f64 = 1.5;
 /// How far the layer goes before it counts as flowing, in diameters.
 const FLOWN: f64 = 0.5;
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
-    let seeds = if quick { 4 } else { 8 };
-    let bonds: &[f64] = if quick { &[0.0, 12.0, 24.0] } else { &[0.0, 5.0, 10.0, 20.0, 30.0] };
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
+    let seeds = effort.pick(4, 8);
+    let bonds: &[f64] = effort.pick(&[0.0, 12.0, 24.0], &[0.0, 5.0, 10.0, 20.0, 30.0]);
     let mut cases = Vec::new();
     for (scene, grains, secs) in [(DRUM, 150.0, 3.0), (INCLINE, 300.0, 6.0)] {
         cases.extend(seeded(bonds, seeds, |bond, seed| {
@@ -90,31 +91,23 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
     Ok(run.with([("angle", angle.to_degrees())]))
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
-    let mut quantities = Vec::new();
-    for (scene, name, grains, band, source) in [
-        (DRUM, "drum", "150 grains", [18.0, 25.0, 32.0], "slopes of discs with μ = 0.5: 20° … 30°"),
-        (INCLINE, "incline", "300 grains", [18.0, 22.5, 27.0], "discs with μ = 0.5: 20° … 25°"),
-    ] {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    angle without cohesion, drum, degrees | 18 25 32 | recalled: slopes of discs with μ = 0.5: 20° … 30°
+    rank correlation of angle and Bond, drum | 0.5 1 1 | recalled: it grows with cohesion
+    angle without cohesion, incline, degrees | 18 22.5 27 | recalled: discs with μ = 0.5: 20° … 25°
+    rank correlation of angle and Bond, incline | 0.5 1 1 | recalled: it grows with cohesion
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
+    let of = |(scene, grains)| {
         let of_scene = all.with("scene", scene);
-        let system = format!("{grains}, Bond {}, {}", all.list("bond"), all.seeds());
-        quantities.push(PublishedQuantity::new(
-            format!("angle without cohesion, {name}, degrees"),
-            &system,
-            &of_scene.with("bond", 0.0).readings("angle"),
-            band,
-            (SourceKind::Memory, source),
-        ));
+        let system = format!("{grains} grains, Bond {}, {}", all.list("bond"), all.seeds());
         let trends = of_scene.by_seed(|of_seed| {
             rank_correlation(&of_seed.points(|case| (case.at("bond"), case.reading("angle"))))
         });
-        quantities.push(PublishedQuantity::correlation(
-            format!("rank correlation of angle and Bond, {name}"),
-            &system,
-            &trends,
-            [0.5, 1.0, 1.0],
-            (SourceKind::Memory, "it grows with cohesion"),
-        ));
-    }
-    quantities
+        let dry = of_scene.with("bond", 0.0).readings("angle");
+        [dry, trends].map(|values| (system.clone(), values))
+    };
+    [(DRUM, 150), (INCLINE, 300)].into_iter().flat_map(of).collect()
 }

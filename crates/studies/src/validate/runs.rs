@@ -3,7 +3,7 @@
 use super::experiment::*;
 use super::variants::{SolveBudget, StepVariant};
 use crate::error::{Error, Result};
-use crate::runner::{Case, Runner, Threads};
+use crate::harness::{Case, Runner, Threads};
 
 pub(super) struct ExperimentRuns {
     pub experiment: &'static Experiment,
@@ -30,11 +30,16 @@ impl ExperimentRuns {
     pub(super) fn judged(&self) -> Vec<(PublishedQuantity, Agreement)> {
         let sound = Measurements(self.cases.iter().filter(|case| !case.run.blew_up).collect());
         let is_spoilt = self.spoilt().is_some();
-        let judge = |quantity: PublishedQuantity| {
-            let verdict = if is_spoilt { Agreement::NotDecided } else { quantity.verdict() };
-            (quantity, verdict)
+        let judge = |(row, measured)| {
+            let quantity = PublishedQuantity::new(row, measured)?;
+            let verdict = match quantity.verdict() {
+                Agreement::NoVerdict => Agreement::NoVerdict,
+                _ if is_spoilt => Agreement::NotDecided,
+                verdict => verdict,
+            };
+            Some((quantity, verdict))
         };
-        (self.experiment.judge)(&sound).into_iter().map(judge).collect()
+        self.experiment.rows().zip((self.experiment.judge)(&sound)).filter_map(judge).collect()
     }
 
     /// True if a step has a number of sweeps at most, and nothing that it is to be solved to.
@@ -70,15 +75,15 @@ fn words(variant: Option<StepVariant>) -> String {
 pub(super) fn run_all(
     experiments: &[&'static Experiment],
     variants: &[StepVariant],
-    quick: bool,
+    effort: Effort,
     runner: &Runner<RunReadings>,
 ) -> Result<Vec<ExperimentRuns>> {
     let (mut all, mut cases) = (Vec::new(), Vec::new());
     for &experiment in experiments {
         let sets: Vec<(Option<StepVariant>, Vec<ExperimentCase>)> = match experiment.cases {
-            ExperimentCases::Own(cases) => vec![(None, cases(quick))],
+            ExperimentCases::Own(cases) => vec![(None, cases(effort))],
             ExperimentCases::Chosen(cases) => {
-                variants.iter().map(|&variant| (Some(variant), cases(quick, variant))).collect()
+                variants.iter().map(|&variant| (Some(variant), cases(effort, variant))).collect()
             }
         };
         for (variant, set) in sets.into_iter().filter(|(_, cases)| !cases.is_empty()) {

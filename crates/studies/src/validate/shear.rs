@@ -39,6 +39,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             021309 (2005): T/N = 0.25 + 1.1 I and φ = 0.81 − 0.3 I for 0.01 < I < 0.2. Methods that take no driven \
             walls are left out.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -62,16 +63,16 @@ const MOMENTS_OF_CELLS: u32 = 5;
 /// What is nearer to a plate says nothing of the inside, in diameters.
 const MARGIN: f64 = 2.5;
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     let speeds: &[f64] =
-        if quick { &[0.03, 0.08, 0.18] } else { &[0.01, 0.02, 0.04, 0.07, 0.11, 0.15, 0.2] };
+        effort.pick(&[0.03, 0.08, 0.18], &[0.01, 0.02, 0.04, 0.07, 0.11, 0.15, 0.2]);
     let layer = |&inertial: &f64| LayerKind {
         at: vec![("inertial", inertial)],
         inertial,
         bond: 0.0,
         breaking_energy: None,
     };
-    layers(quick, variant, &speeds.iter().map(layer).collect::<Vec<_>>())
+    layers(effort, variant, &speeds.iter().map(layer).collect::<Vec<_>>())
 }
 
 /// What tells a sheared layer from others.
@@ -89,7 +90,7 @@ pub(super) struct LayerKind {
 
 /// Cases of layers; none where the method does not move walls that a force drives.
 pub(super) fn layers(
-    quick: bool,
+    effort: Effort,
     variant: StepVariant,
     kinds: &[LayerKind],
 ) -> Vec<ExperimentCase> {
@@ -98,11 +99,10 @@ pub(super) fn layers(
     if !(variant.stepper.info().takes_drives && takes_drives) {
         return Vec::new();
     }
-    let (cell, seeds) = if quick {
-        (ShearCell { wide: 16, columns: 13, rows: 18 }, 5)
-    } else {
-        (ShearCell { wide: 32, columns: 25, rows: 48 }, 8)
-    };
+    let (cell, seeds) = effort.pick(
+        (ShearCell { wide: 16, columns: 13, rows: 18 }, 5),
+        (ShearCell { wide: 32, columns: 25, rows: 48 }, 8),
+    );
     let kinds: Vec<&LayerKind> = kinds.iter().collect();
     seeded(&kinds, seeds, |kind, seed| {
         let layer = ShearedLayer { cell, kind: kind.clone(), seed };
@@ -222,44 +222,37 @@ fn rate(moment: &Moment) -> f64 {
     slope(&points)
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    T/N, extended to I = 0 | 0.2 0.25 0.32 | recalled: da Cruz et al. 2005: 0.25
+    slope of T/N in I | 0.6 1.1 1.6 | recalled: da Cruz et al. 2005: 1.1
+    φ, extended to I = 0 | 0.79 0.81 0.84 | recalled: da Cruz et al. 2005: 0.81
+    slope of φ in I | -0.5 -0.3 -0.1 | recalled: da Cruz et al. 2005: −0.3
+    T of the plates: their difference over their sum | -0.05 0 0.05 | exact: a steady flow gains no momentum
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
     let (grains, numbers) = (all.first("grains"), all.list("inertial"));
     let system = format!("{grains} grains, I ≈ {numbers}, {}", all.seeds());
-    // What the line through a reading of each seed has at I = 0, and its slope.
-    let lines = |reading: &str| -> (Vec<f64>, Vec<f64>) {
+    // The value at I = 0 of the line through a reading of each seed, and its slope.
+    let lines = |reading: &str| -> [Vec<f64>; 2] {
         let line = |of_seed: Measurements| {
             let points = of_seed.points(|case| (case.reading("inertial"), case.reading(reading)));
             let (slope, (x, y)) = (slope(&points), middle(&points));
             (y - slope * x, slope)
         };
-        all.by_seed(line).into_iter().unzip()
+        all.by_seed(line).into_iter().unzip::<_, _, Vec<_>, Vec<_>>().into()
     };
-    let quantity = |name: &str, values: &[f64], band, source| {
-        PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
-    };
-    let (frictions, friction_slopes) = lines("friction");
-    let (densest, dilations) = lines("solid_fraction");
-    let [at_rest, slope] = ["T/N, extended to I = 0", "slope of T/N in I"];
-    vec![
-        quantity(at_rest, &frictions, [0.2, 0.25, 0.32], "da Cruz et al. 2005: 0.25"),
-        quantity(slope, &friction_slopes, [0.6, 1.1, 1.6], "da Cruz et al. 2005: 1.1"),
-        quantity("φ, extended to I = 0", &densest, [0.79, 0.81, 0.84], "da Cruz et al. 2005: 0.81"),
-        quantity("slope of φ in I", &dilations, [-0.5, -0.3, -0.1], "da Cruz et al. 2005: −0.3"),
-        balance(all, "inertial", &system),
-    ]
+    let values = [lines("friction"), lines("solid_fraction")].concat();
+    let values = values.into_iter().chain([imbalances(all, "inertial")]);
+    values.map(|values| (system.clone(), values)).collect()
 }
 
 /// How much more the upper plate pulls than the lower one in the layers with the largest value of a number, over both
-/// pulls: where a flow is not steady yet, one plate has still to set it going.
-pub(super) fn balance(all: &Measurements, name: &str, system: &str) -> PublishedQuantity {
+/// pulls: while a flow is not steady yet, one plate still accelerates it.
+pub(super) fn imbalances(all: &Measurements, name: &str) -> Vec<f64> {
     let most = all.values(name).last().copied().unwrap_or(f64::NAN);
-    PublishedQuantity::new(
-        "T of the plates: their difference over their sum",
-        system,
-        &all.with(name, most).readings("imbalance"),
-        [-0.05, 0.0, 0.05],
-        (SourceKind::Exact, "a steady flow gains no momentum"),
-    )
+    all.with(name, most).readings("imbalance")
 }
 
 #[cfg(test)]

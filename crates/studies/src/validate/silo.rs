@@ -23,6 +23,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             (W − k d)^1.5 (W. A. Beverloo et al. 1961, in the plane), from the time between 8 and 40 % of the grains \
             out.",
     cases: ExperimentCases::Chosen(cases),
+    published: PUBLISHED,
     judge,
 };
 
@@ -37,10 +38,10 @@ const TIMES_GRAVITY: f64 = 4.0;
 /// k where the exponent is looked for.
 const TAKEN_K: f64 = 1.4;
 
-fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
-    let (grains, seeds) = if quick { (450, 6) } else { (900, 8) };
+fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (grains, seeds) = effort.pick((450, 6), (900, 8));
     let orifices: &[f64] =
-        if quick { &[6.0, 7.0, OF_GRAVITY, 10.0] } else { &[6.0, 7.0, OF_GRAVITY, 9.5, 11.0] };
+        effort.pick(&[6.0, 7.0, OF_GRAVITY, 10.0], &[6.0, 7.0, OF_GRAVITY, 9.5, 11.0]);
     let mut flows: Vec<(f64, f64)> = orifices.iter().map(|&orifice| (orifice, 1.0)).collect();
     flows.push((OF_GRAVITY, TIMES_GRAVITY));
     let cost = f64::from(grains) * 5.0 / variant.time_step_secs;
@@ -96,7 +97,14 @@ fn discharge(
     Ok(run.with([("rate", rate / unit)]))
 }
 
-fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+/// The rows of [`judge`].
+const PUBLISHED: &str = "
+    k of (W − k d) | 0.8 1.4 2 | recalled: Beverloo et al. 1961: 1.3 … 1.5
+    exponent of Q in W − 1.4 d | 1.3 1.5 1.7 | recalled: Beverloo et al. 1961 in the plane: 1.5
+    Q at 4 g over that at g | 1.9 2 2.1 | exact: dimensions: Q ∝ √g
+";
+
+fn judge(all: &Measurements) -> Vec<Measured> {
     let (grains, orifices) = (all.first("grains"), all.list("orifice"));
     let system = format!("{grains} grains, W = {orifices} d, {}", all.seeds());
     let rates = |of_seed: Measurements, of: fn(f64, f64) -> (f64, f64)| -> Vec<(f64, f64)> {
@@ -115,15 +123,5 @@ fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
         let at = |times| of_seed.with("gravity", times).with("orifice", OF_GRAVITY).reading("rate");
         at(TIMES_GRAVITY) / at(1.0)
     });
-    let quantity = |name: &str, values: &[f64], band, source| {
-        PublishedQuantity::new(name, &system, values, band, source)
-    };
-    let offset = (SourceKind::Memory, "Beverloo et al. 1961: 1.3 … 1.5");
-    let exponent = (SourceKind::Memory, "Beverloo et al. 1961 in the plane: 1.5");
-    let dimensions = (SourceKind::Exact, "dimensions: Q ∝ √g");
-    vec![
-        quantity("k of (W − k d)", &offsets, [0.8, 1.4, 2.0], offset),
-        quantity("exponent of Q in W − 1.4 d", &exponents, [1.3, 1.5, 1.7], exponent),
-        quantity("Q at 4 g over that at g", &ratios, [1.9, 2.0, 2.1], dimensions),
-    ]
+    [offsets, exponents, ratios].map(|values| (system.clone(), values)).into()
 }

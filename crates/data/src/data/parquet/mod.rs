@@ -17,8 +17,8 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
 use super::columns::empty_tables_of_frames;
+use super::folder_files::{make_folder, numbered_parts, path_of_part, remove};
 use super::format::{Format, Frame, RecordingMark, RunFacts, check_count};
-use super::recording_folder::{make_folder, numbered_parts, path_of_part, remove};
 use super::table::{Column, Table, Values};
 use crate::column_spec::STEP;
 use crate::error::{Error, Result};

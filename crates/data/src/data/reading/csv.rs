@@ -7,10 +7,11 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::{
-    COMMENT, DiscRow, LEFT_OUT, NUMBERS, RecordedGrains, discs_of_rows, has_needed, known_names,
+use super::rows::{
+    DiscRow, LEFT_OUT, NUMBERS, RecordedGrains, discs_of_rows, has_needed, known_names,
     no_such_step, unknown_of,
 };
+use crate::data::csv::COMMENT;
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
 

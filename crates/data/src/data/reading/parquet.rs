@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{DiscRow, LEFT_OUT, NUMBERS, RecordedGrains, check_names, discs_of_rows, no_such_step};
+use super::rows::{
+    DiscRow, LEFT_OUT, NUMBERS, RecordedGrains, check_names, discs_of_rows, no_such_step,
+};
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 

@@ -8,8 +8,9 @@ use std::path::Path;
 
 use glam::DVec2;
 
+use super::head::{add_facts, add_moment, head_of, number_in};
 use super::vtk_file::{VtkCells, VtkFile};
-use super::{Frame, RunFacts, add_facts, add_moment, head_of, number_in};
+use crate::data::format::{Frame, RunFacts};
 use crate::error::Result;
 use crate::granular::{Fields, box_of};
 use crate::output::{counted, note_line};

@@ -10,6 +10,7 @@
 //! measured of the whole pile is there too, as `pile_NAME`, and what walls do, with a value a wall, as `wall_NAME`.
 
 mod fields_file;
+mod head;
 mod vtk_file;
 
 use std::fs::File;
@@ -19,11 +20,11 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use self::fields_file::{FieldsBox, fields_file};
+use self::head::{add_facts, add_moment, moment_of};
 use self::vtk_file::{VtkCells, VtkFile};
+use super::folder_files::{files_named, make_folder, remove};
 use super::format::{Format, Frame, RecordingMark, RunFacts};
-use super::recording_folder::{files_named, make_folder, remove};
 use super::table::{Column, Table, Values};
-use crate::column_spec::STEP;
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
@@ -67,10 +68,6 @@ pub(super) const FIELDS: VtkFolder = VtkFolder {
 
 const ENDING_OF_SERIES: &str = ".pvd";
 
-/// What the time is called, s: VTK's readers look for this name.
-const TIME: &str = "TimeValue";
-/// Bytes in which a file says its numbers.
-const LONGEST_HEAD: u64 = 4096;
 /// Columns that are the same in all rows of a frame.
 const OF_FRAME: [&str; 2] = ["step", "time"];
 /// In front of the names of what is measured of the whole pile, since grains have arrays of the same names.
@@ -246,29 +243,6 @@ fn is_whole(path: &Path) -> bool {
     read.is_ok() && end == vtk_file::END.as_bytes()
 }
 
-/// The lines of a file that have its numbers.
-fn head_of(path: &Path) -> std::io::Result<String> {
-    let mut head = Vec::new();
-    File::open(path)?.take(LONGEST_HEAD).read_to_end(&mut head)?;
-    Ok(String::from_utf8_lossy(&head).into_owned())
-}
-
-/// The number of that name.
-fn number_in<'a>(head: &'a str, name: &str) -> Option<&'a str> {
-    let (_, rest) = head.split_once(&format!("Name=\"{name}\""))?;
-    Some(rest.split_once('>')?.1.split_once('<')?.0)
-}
-
-/// Step and time, s, of the frame that a file has.
-fn moment_of(path: &Path) -> Result<(u64, f64)> {
-    let head = head_of(path).map_err(|error| Error::file(path, error))?;
-    let step = number_in(&head, STEP).and_then(|number| number.parse().ok());
-    let time_secs = number_in(&head, TIME).and_then(|number| number.parse().ok());
-    step.zip(time_secs).ok_or_else(|| {
-        Error::file(path, format!("says no {STEP} and {TIME}, but must be a file that slump wrote"))
-    })
-}
-
 /// From centre to centre as they are now, or to the touched point of a boundary, which the branch
 /// leads to.
 fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
@@ -313,17 +287,6 @@ fn file(
         }
     }
     file
-}
-
-fn add_moment(file: &mut VtkFile, frame: &Frame) {
-    let observables = &frame.moment.observables;
-    file.add_number(STEP, observables.step as i64);
-    file.add_number(TIME, observables.time_secs);
-}
-
-fn add_facts(file: &mut VtkFile, facts: &RunFacts) {
-    let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
-    file.add_words("about", facts);
 }
 
 /// Adds the columns of a table whose rows are no points, with `prefix` in front of their names.

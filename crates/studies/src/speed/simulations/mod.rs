@@ -12,14 +12,14 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::variants::{self, ChartedVariant, Family};
+use super::variants::{self, Family};
 use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Layer, Look, Point, Rgb, Sheet, pareto_front, points};
 use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
+use crate::harness::{Case, Change, Effort, Runner, Threads};
 use crate::number;
 use crate::output::Progress;
-use crate::runner::{Case, Runner, Threads};
 use crate::scene::{NewPile, Scene};
 use crate::sim::{RunEnding, Stepper, Tally};
 use crate::solver::{Method, SolverSettings, StopTest};
@@ -49,7 +49,7 @@ const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
 
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let plan = &SimulationPlan::new(bench.options.quick);
+    let plan = &SimulationPlan::new(bench.effort);
     let configs: Vec<_> =
         (0..plan.piles.len()).map(|pile| plan.config(pile, FINEST_SECS, FLOOR_LAW)).collect();
     let states = States::of(bench.states_folder(), configs.iter())?;
@@ -60,21 +60,17 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
         name: "chart-simulation".into(),
         sheet: report::sheet(bench, plan, &simulated, &references),
         words: report::words(plan, &references),
-        summary: report::table(plan, &simulated),
-        others: Vec::new(),
+        tables: vec![report::table(&simulated)],
     }])
 }
 
 /// A variant with its budget: how well it is to solve its steps.
 struct BudgetedVariant {
-    /// Number in `SimulationPlan::variants`.
-    variant: usize,
+    charted: Change,
     /// Whose references it is held against.
     law: Stepper,
-    budget: String,
-    solver: SolverSettings,
-    /// Of a stepper without a method; its own number where this is 0.
-    substeps: u32,
+    /// Its name is the budget's.
+    change: Change,
 }
 
 /// What is simulated: piles of the paper's 138 grains.
@@ -82,7 +78,6 @@ struct SimulationPlan {
     time_steps_secs: Vec<f64>,
     /// (Bond, seed) of each pile.
     piles: Vec<(f64, u64)>,
-    variants: Vec<ChartedVariant>,
     budgeted: Vec<BudgetedVariant>,
     laws: Vec<Stepper>,
     repeats: u32,
@@ -92,18 +87,15 @@ struct SimulationPlan {
 
 impl SimulationPlan {
     /// What the law range costs is told by one good method, and by long runs.
-    fn new(quick: bool) -> Self {
-        let laws: &[Stepper] =
-            if quick { &[Stepper::Moreau] } else { &[Stepper::Moreau, Stepper::Range] };
-        let (variants, budgeted) = budgeted(laws, quick);
+    fn new(effort: Effort) -> Self {
+        let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
         Self {
-            time_steps_secs: if quick { vec![1e-3, 5e-3] } else { vec![1e-3, 2e-3, 5e-3] },
-            piles: piles(quick),
-            variants,
-            budgeted,
+            time_steps_secs: effort.pick(vec![1e-3, 5e-3], vec![1e-3, 2e-3, 5e-3]),
+            piles: piles(effort),
+            budgeted: budgeted(laws, effort),
             laws: laws.to_vec(),
-            repeats: if quick { 1 } else { 2 },
-            limit_secs: if quick { 2.0 } else { 10.0 },
+            repeats: effort.pick(1, 2),
+            limit_secs: effort.pick(2.0, 10.0),
         }
     }
 
@@ -127,12 +119,11 @@ impl SimulationPlan {
     }
 }
 
-fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<BudgetedVariant>) {
-    let residuals: &[f64] =
-        if quick { &[1e-2, 1e-4, 1e-6] } else { &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8] };
-    let sweeps: &[u32] = if quick { &[20] } else { &[10, 40] };
-    let all_substeps: &[u32] = if quick { &[0] } else { &[0, 16, 64] };
-    let (mut variants, mut budgeted) = (Vec::new(), Vec::new());
+fn budgeted(laws: &[Stepper], effort: Effort) -> Vec<BudgetedVariant> {
+    let residuals: &[f64] = effort.pick(&[1e-2, 1e-4, 1e-6], &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8]);
+    let sweeps: &[u32] = effort.pick(&[20], &[10, 40]);
+    let all_substeps: &[u32] = effort.pick(&[0], &[0, 16, 64]);
+    let mut budgeted = Vec::new();
     let of_law = |law| variants::all().into_iter().map(move |variant| (law, variant));
     let models = variants::models().into_iter().map(|model| (Stepper::Moreau, model));
     for (law, mut variant) in laws.iter().copied().flat_map(of_law).chain(models) {
@@ -140,15 +131,16 @@ fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<Budgeted
             if variant.method() != Some(Method::Newton) {
                 continue;
             }
-            variant.stepper = law;
+            variant.config.stepper = Some(law);
             variant.name.push_str(" (range)");
         }
-        let number = variants.len();
-        let mut add = |budget: String, solver, substeps| {
-            budgeted.push(BudgetedVariant { variant: number, law, budget, solver, substeps });
+        let mut add = |budget: String, solver: SolverSettings, substeps: u32| {
+            let mut change = Change::of_solver(budget, variant.stepper(), &solver);
+            change.config.parameters.substeps = Some(substeps);
+            budgeted.push(BudgetedVariant { charted: variant.clone(), law, change });
         };
         if variant.is_default() {
-            add("its own effort".to_owned(), variant.solver, 0);
+            add("its own effort".to_owned(), variant.solver(), 0);
         } else if variant.method().is_some() {
             for &tolerance in residuals {
                 let solver = variant.to_residual(tolerance, MOST_SWEEPS);
@@ -166,16 +158,15 @@ fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<Budgeted
                 add(budget, variant.sweeps(1), count);
             }
         }
-        variants.push(variant);
     }
-    (variants, budgeted)
+    budgeted
 }
 
 /// (Bond, seed) of each pile of 138 grains. Bond numbers are dealt out to the seeds: each is met by several, and each
 /// meets several.
-fn piles(quick: bool) -> Vec<(f64, u64)> {
+fn piles(effort: Effort) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
-    if quick {
+    if effort == Effort::Quick {
         return vec![(0.0, shared), (20.0, 1), (50.0, 2), (100.0, 3)];
     }
     let bonds = [[0.0, 50.0], [20.0, 100.0]];
@@ -348,21 +339,19 @@ fn run_all<'a>(
     let mut simulated = Vec::with_capacity(points);
     for &time_step_secs in &plan.time_steps_secs {
         for variant in &plan.budgeted {
-            let BudgetedVariant { law, budget, solver, substeps, .. } = variant;
-            let charted = &plan.variants[variant.variant];
+            let BudgetedVariant { charted, law, change } = variant;
             let (mut runs, mut failed) = (Vec::new(), None);
             for (pile, (bond, seed)) in plan.piles.iter().enumerate() {
                 progress.advance(1);
                 if failed.is_some() {
                     continue;
                 }
-                let name = &charted.name;
+                let (name, budget) = (&charted.name, &change.name);
                 let key =
                     format!("{name}, {budget}, Bond {bond}, seed {seed}, dt {time_step_secs:e}");
                 let run = runner.result(&key, || {
                     let mut scene = states.scene(&plan.config(pile, time_step_secs, *law))?;
-                    (scene.stepper, scene.solver) = (charted.stepper, *solver);
-                    scene.parameters.substeps = *substeps;
+                    change.apply(&mut scene);
                     timed_run(&scene, plan.repeats, plan.limit_secs * DURATION_SECS)
                 })?;
                 failed = run.result.failed.clone();

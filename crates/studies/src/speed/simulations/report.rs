@@ -1,7 +1,7 @@
 //! How simulations are drawn and told.
 
 use super::*;
-use crate::report::ReportTable;
+use crate::harness::ReportTable;
 
 /// Piles from which on intervals tell something.
 const TELLING: usize = 8;
@@ -42,7 +42,7 @@ pub(super) fn sheet(
             "What each family comes to at best for its cost{intervals}; means over {piles} piles of {grains} grains, Δt of \
              {steps} and all budgets. A budget that is too slow or blows up has failed. Dashes: two references differ by so much."
         ),
-        &variants::members(&plan.variants),
+        &variants::members(plan.budgeted.iter().map(|one| &one.charted)),
         &format!("References by {REFERENCE}. Slump after {DURATION_SECS} s."),
     ]);
     Sheet { size: (1200, 640), charts, caption }
@@ -68,8 +68,7 @@ fn with_errors(
     let least = floor.unwrap_or(0.0).max(LEAST_ERROR);
     let mut ends = Vec::new();
     for family in Family::ALL {
-        let is_its =
-            |point: &&SimulatedPoint| plan.variants[point.variant.variant].family() == family;
+        let is_its = |point: &&SimulatedPoint| point.variant.charted.family() == family;
         let its: Vec<_> = simulated.iter().filter(is_its).collect();
         let (good, failed): (Vec<_>, Vec<_>) =
             its.into_iter().partition(|point| point.failed.is_none());
@@ -112,16 +111,16 @@ pub(super) fn words(plan: &SimulationPlan, references: &References) -> String {
     )
 }
 
-pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> ReportTable {
+pub(super) fn table(simulated: &[SimulatedPoint]) -> ReportTable {
     let columns = "method time_step effort failed simulated_secs_per_sec error_same_step error_finest_step \
                    verdicts_agreed mean_overlap unconverged_steps steps";
     let row = |point: &SimulatedPoint| {
         let runs = &point.runs;
         let overlap = mean(&runs.iter().map(|run| run.mean_overlap).collect::<Vec<_>>()).mean;
         let sum = |number: fn(&TimedRun) -> u64| runs.iter().map(number).sum::<u64>();
-        let name = &plan.variants[point.variant.variant].name;
+        let name = &point.variant.charted.name;
         let mut row = vec![name.clone(), format!("{:e}", point.time_step_secs)];
-        row.push(point.variant.budget.clone());
+        row.push(point.variant.change.name.clone());
         row.push(point.failed.clone().unwrap_or_default());
         let [same, finest] = point.errors.map(|error| error.mean);
         let numbers = [point.speed, same, finest, point.verdicts];
@@ -134,7 +133,5 @@ pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> Repo
         row.extend(numbers.into_iter().map(|number| if is_there { number } else { String::new() }));
         row
     };
-    let rows = simulated.iter().map(row).collect();
-    let name = "chart-simulation-points".to_owned();
-    ReportTable { name, columns: columns.split(' ').collect(), rows }
+    ReportTable::new("chart-simulation-points", columns, simulated.iter().map(row))
 }

@@ -22,7 +22,7 @@ fn made_up(plan: &SimulationPlan) -> References {
 
 #[test]
 fn every_plan_has_its_references_once() {
-    for plan in [true, false].map(SimulationPlan::new) {
+    for plan in [Effort::Quick, Effort::Full].map(SimulationPlan::new) {
         let references = made_up(&plan);
         for (number, (case, _)) in references.0.iter().enumerate() {
             let before = &references.0[..number];

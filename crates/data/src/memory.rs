@@ -103,7 +103,7 @@ pub fn given_file(path: &Path) -> Result<MemoryFile> {
 }
 
 /// Puts a file where it can be fetched.
-pub(super) fn keep_written(path: &Path, file: &MemoryFile) {
+pub(crate) fn keep_written(path: &Path, file: &MemoryFile) {
     let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
     written.push((path.to_owned(), file.content()));
 }

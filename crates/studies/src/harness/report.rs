@@ -14,6 +14,17 @@ pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &st
     write_file(&path("svg"), chart::svg(sheet)?.as_bytes())
 }
 
+/// The different ones of some values, in their order.
+pub(crate) fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::new();
+    for one in all {
+        if !kept.contains(&one) {
+            kept.push(one);
+        }
+    }
+    kept
+}
+
 /// Numbers that a figure's claims rest on.
 pub(crate) struct ReportTable {
     pub name: String,
@@ -22,6 +33,16 @@ pub(crate) struct ReportTable {
 }
 
 impl ReportTable {
+    /// A table with these columns, whose names have spaces between them.
+    pub(crate) fn new(
+        name: impl Into<String>,
+        columns: &'static str,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        let columns = columns.split(' ').collect();
+        Self { name: name.into(), columns, rows: rows.into_iter().collect() }
+    }
+
     pub(crate) fn to_csv(&self) -> Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let refuse = |error: csv::Error| Error::file(&self.name, error);

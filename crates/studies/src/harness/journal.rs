@@ -4,24 +4,24 @@
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{ErrorKind::NotFound, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::case::FinishedCase;
 use crate::error::{Error, Result};
 use crate::output::{in_use, is_recognised, lock_of, note_line};
-use crate::runner::FinishedCase;
 
 const ENDING: &str = "jsonl";
 
-pub(super) fn path_of(folder: &Path, name: &str) -> PathBuf {
+pub(crate) fn path_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{name}.{ENDING}"))
 }
 
-pub(super) struct Journal {
+pub(crate) struct Journal {
     path: PathBuf,
     file: Mutex<File>,
     /// Held as long as the journal is open.
@@ -31,7 +31,7 @@ pub(super) struct Journal {
 impl Journal {
     /// Opens a journal for appending and cuts off a half line at its end. Damaged lines are named and
     /// blanked.
-    pub(super) fn open(folder: &Path, name: &str) -> Result<Self> {
+    pub(crate) fn open(folder: &Path, name: &str) -> Result<Self> {
         let path = path_of(folder, name);
         let refuse = |error: std::io::Error| Error::file(&path, error);
         let file = OpenOptions::new().create(true).read(true).append(true).open(&path);
@@ -49,7 +49,7 @@ impl Journal {
         Ok(Self { path, file: Mutex::new(file), _lock: lock })
     }
 
-    pub(super) fn add(&self, entry: &impl Serialize) -> Result<()> {
+    pub(crate) fn add(&self, entry: &impl Serialize) -> Result<()> {
         let line = serde_json::to_string(entry).map_err(|error| Error::file(&self.path, error))?;
         let line = sealed_line(&line);
         let mut file = match self.file.lock() {
@@ -63,7 +63,7 @@ impl Journal {
 }
 
 /// All finished cases in the journals of some folders, by key.
-pub(super) fn read_all<T: Serialize + DeserializeOwned>(
+pub(crate) fn read_all<T: Serialize + DeserializeOwned>(
     folders: &[PathBuf],
 ) -> Result<HashMap<String, FinishedCase<T>>> {
     let mut all: HashMap<String, FinishedCase<T>> = HashMap::new();
@@ -84,7 +84,7 @@ pub(super) fn read_all<T: Serialize + DeserializeOwned>(
 }
 
 /// The records of one journal. Damaged lines are named and left out.
-pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
+pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     let mut entries = Vec::new();
     for (number, line) in lines(&bytes) {
@@ -126,25 +126,31 @@ fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
-pub(super) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
+pub(crate) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for folder in folders {
-        for entry in std::fs::read_dir(folder).map_err(|error| Error::file(folder, error))? {
-            let path = entry.map_err(|error| Error::file(folder, error))?.path();
-            if path.extension().is_some_and(|ending| ending == ENDING) {
-                paths.push(path);
-            }
-        }
+        let files = files_in(folder)?.into_iter();
+        paths.extend(files.filter(|path| path.extension().is_some_and(|it| it == ENDING)));
     }
     paths.sort();
     Ok(paths)
+}
+
+/// The files and folders in a folder; none if it is missing.
+pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = match std::fs::read_dir(folder) {
+        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(|error| Error::file(folder, error))?,
+    };
+    let path = |entry: std::io::Result<std::fs::DirEntry>| entry.map(|entry| entry.path());
+    entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
 /// The journals of a folder.
 ///
 /// # Errors
 /// Where another program is at one.
-pub(super) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
+pub(crate) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     let paths = journals(&[folder.to_owned()])?;
     let is_in_use =
         |path: &&PathBuf| lock_of(path).is_ok_and(|lock| lock.try_lock_shared().is_err());
@@ -161,7 +167,7 @@ const BETWEEN: &str = "\",\"record\":";
 /// What stands before the checksum at the end of a file whose comments begin with `#`.
 const COMMENT: &str = "# checksum ";
 
-pub(super) fn checksum(text: &[u8]) -> String {
+pub(crate) fn checksum(text: &[u8]) -> String {
     blake3::hash(text).to_hex()[..DIGITS].to_owned()
 }
 
@@ -179,12 +185,12 @@ fn record_of(line: &[u8]) -> Option<&str> {
 }
 
 /// A text with its checksum as a last line, a comment.
-pub(super) fn sealed_text(text: &str) -> String {
+pub(crate) fn sealed_text(text: &str) -> String {
     format!("{text}{COMMENT}{}\n", checksum(text.as_bytes()))
 }
 
 /// The text that was sealed; nothing where it is damaged.
-pub(super) fn text_of(bytes: &[u8]) -> Option<&str> {
+pub(crate) fn text_of(bytes: &[u8]) -> Option<&str> {
     let (text, found) = str::from_utf8(bytes).ok()?.rsplit_once(COMMENT)?;
     (checksum(text.as_bytes()) == found.strip_suffix('\n')?).then_some(text)
 }

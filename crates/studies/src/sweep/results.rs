@@ -8,13 +8,12 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::Study;
-use super::runner::FinishedCase;
+use super::plan::Study;
 use super::series::Series;
-use super::sweep::SweptRun;
 use crate::config::Config;
 use crate::data::Recording;
 use crate::error::{Error, Result};
+use crate::harness::FinishedCase;
 use crate::number;
 use crate::output::write_file;
 use crate::scene::Scene;
@@ -76,6 +75,15 @@ impl RunResult {
             alarms,
         )
     }
+}
+
+/// A run as the journal has it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct SweptRun {
+    pub outcome: RunResult,
+    /// Checksum of the file with its series, if it has one.
+    #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
+    pub series: Option<String>,
 }
 
 #[cfg(test)]
@@ -210,7 +218,7 @@ impl RunsTable {
 
 /// How many of some runs raised alarms, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)";
 /// nothing where none did.
-pub(super) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Option<String> {
+pub(crate) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Option<String> {
     let (mut all, mut alarmed, mut by_kind) = (0, 0, [0; AlarmKind::ALL.len()]);
     for result in results {
         all += 1;

@@ -1,17 +1,13 @@
-//! What a time was measured on, when, and with which command; and the runner of what is measured there.
+//! The processor, the day and the command of a measurement.
 
-use std::path::Path;
 use std::time::SystemTime;
 
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
-use super::runner::Runner;
 use crate::error::{Error, Result};
-use crate::output::check_writable;
 
-#[derive(Clone, Debug)]
-pub(super) struct Machine {
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Machine {
     /// The program's version and commit.
     pub version: String,
     pub processor: String,
@@ -20,11 +16,12 @@ pub(super) struct Machine {
     pub date: String,
     pub command: String,
     /// Tells programs and processors apart: times of another one are no times of this one.
+    #[serde(skip)]
     pub fingerprint: String,
 }
 
 impl Machine {
-    pub(super) fn this(version: &str) -> Result<Self> {
+    pub(crate) fn this(version: &str) -> Result<Self> {
         let processor = processor();
         let program = std::env::current_exe().map_err(|error| Error::file("slump", error))?;
         let bytes = std::fs::read(&program).map_err(|error| Error::file(&program, error))?;
@@ -44,21 +41,7 @@ impl Machine {
         })
     }
 
-    /// A runner of the measurements of this program on this machine, whose journal lies below `folder`. A quick pass
-    /// has its own.
-    pub(super) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
-        &self,
-        folder: &Path,
-        quick: bool,
-        name: &str,
-    ) -> Result<Runner<T>> {
-        let pass = if quick { "quick" } else { "full" };
-        let folder = folder.join("measured").join(&self.fingerprint).join(pass);
-        check_writable("out", &folder)?;
-        Runner::open(name, &folder, name)
-    }
-
-    pub(super) fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         let Self { version, processor, cores, date, command, .. } = self;
         let cores = if *cores == 1 { "1 core".into() } else { format!("{cores} cores") };
         format!("slump {version}; {processor}, {cores}; {date}; {command}")

@@ -7,33 +7,16 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::Instant;
 
 use rayon::prelude::*;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 
+use super::case::{Case, FinishedCase};
+use super::journal::{self, Journal};
 use crate::error::Result;
-use crate::journal::{self, Journal};
 use crate::output::{Progress, note_line};
 
 /// Lines that report progress where there is no terminal to draw a bar on.
 const LINES_OF_PROGRESS: usize = 20;
-
-pub(crate) struct Case<C> {
-    /// Tells it apart from all other cases of its journal.
-    pub key: String,
-    /// How long it may take, in any unit: for the order of work and for progress.
-    pub cost: f64,
-    pub setup: C,
-}
-
-/// A line of a journal: a case and its result, whose fields stand beside the others.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct FinishedCase<T> {
-    pub key: String,
-    pub wall_secs: f64,
-    /// A structure without a field `key` or `wall_secs`.
-    #[serde(flatten)]
-    pub result: T,
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Threads {
@@ -135,6 +118,8 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
 
 #[cfg(test)]
 mod tests {
+    use serde::Deserialize;
+
     use super::*;
     use crate::error::Error;
 

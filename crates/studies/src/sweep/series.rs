@@ -3,10 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::runner::FinishedCase;
-use super::sweep::SweptRun;
-use super::{SeriesSettings, journal};
+use super::plan::SeriesSettings;
 use crate::error::{Error, Result};
+use crate::harness::journal;
 use crate::output::{note_line, write_file};
 use crate::scene::Scene;
 use crate::sim::{Observables, Simulation};
@@ -76,10 +75,10 @@ fn column_names(observables: &Observables) -> Result<String> {
 }
 
 /// True if the series of a finished run is there as it was written. One that is damaged is named.
-pub(super) fn is_whole(folder: &Path, case: &FinishedCase<SweptRun>) -> bool {
-    let path = series_path(folder, &case.key);
+pub(super) fn is_whole(folder: &Path, key: &str, checksum: Option<&str>) -> bool {
+    let path = series_path(folder, key);
     let Ok(bytes) = std::fs::read(&path) else { return false };
-    let whole = case.result.series.as_ref() == Some(&journal::checksum(&bytes));
+    let whole = checksum == Some(journal::checksum(&bytes).as_str());
     if !whole {
         note_line(format_args!("{}: is damaged; its run is computed anew", path.display()));
     }

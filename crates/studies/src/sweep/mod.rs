@@ -5,6 +5,15 @@
 //! states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are there,
 //! `runs.csv` and `report.json`.
 
+mod drawing;
+mod drawing_choice;
+mod groups;
+mod plan;
+mod ranges;
+mod results;
+mod run_group;
+mod series;
+
 use std::collections::HashSet;
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
@@ -12,21 +21,25 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::journal::{self, Journal};
-use super::means::REPORT;
-use super::results::{RunResult, RunsTable, run_to_end};
-use super::runner::{Case, Runner, Threads};
-use super::series::{self, SERIES, Series};
-use super::states::States;
-use super::{PlannedRun, Study};
+pub use self::drawing_choice::SweepChart;
+use self::groups::REPORT;
+pub use self::groups::write_means;
+pub use self::plan::{PlannedRun, SeriesSettings, Study};
+pub(crate) use self::results::alarms_of;
+pub use self::results::{RunResult, RunsTable, Status};
+use self::results::{SweptRun, run_to_end};
+pub use self::series::series_path;
+use self::series::{SERIES, Series};
 use crate::config::scene_facts;
 use crate::data::{Recording, Times, formats_of, remove_recording};
 use crate::error::{Error, Result};
+use crate::harness::{Case, Journal, Runner, Shard, Threads, journal};
 use crate::output::{
     SharedFolder, check_recognised, check_writable, is_recognised, note_line, remove_drafts,
     remove_if_there, write_file,
 };
 use crate::scene::Scene;
+use crate::states::States;
 
 /// File that says which study a folder holds.
 const STUDY_FILE: &str = "study.json";
@@ -37,41 +50,6 @@ const TABLE: &str = "runs.csv";
 const MOMENT: Duration = Duration::from_millis(100);
 const MOMENTS: u32 = 20;
 
-/// Part `index` of `count`, counted from 1. Every count-th run belongs to it, so that cheap and dear
-/// runs are dealt out evenly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    /// From 1 to `count`.
-    pub index: usize,
-    /// Number of parts.
-    pub count: usize,
-}
-
-impl Shard {
-    /// True if the run of that number belongs to this part.
-    fn has(self, run: usize) -> bool {
-        run % self.count == self.index - 1
-    }
-
-    /// The name of its journal, where that of the whole is `of`.
-    pub(super) fn journal(self, of: &str) -> String {
-        format!("{of}-{}-of-{}", self.index, self.count)
-    }
-}
-
-impl std::str::FromStr for Shard {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        let refuse = || Error::value("shard", text, "k/n with k between 1 and n, as in 3/16");
-        let (index, count) = text.split_once('/').ok_or_else(refuse)?;
-        match (index.parse(), count.parse()) {
-            (Ok(index), Ok(count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
-            _ => Err(refuse()),
-        }
-    }
-}
-
 /// How a sweep is to run.
 #[derive(Clone, Debug, Default)]
 pub struct SweepOptions {
@@ -81,14 +59,6 @@ pub struct SweepOptions {
     pub redo: bool,
     /// The folder of initial states; one in the folder of results where there is none.
     pub states: Option<PathBuf>,
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct SweptRun {
-    pub outcome: RunResult,
-    /// Checksum of the file with its series, where it has one.
-    #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
-    pub series: Option<String>,
 }
 
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -136,7 +106,8 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     finished.retain(|key, case| {
         keys.contains(key.as_str())
             && (study.data.is_none() || data_path(folder, key).exists())
-            && (study.series.is_none() || series::is_whole(folder, case))
+            && (study.series.is_none()
+                || series::is_whole(folder, key, case.result.series.as_deref()))
     });
     if !finished.is_empty() {
         let (done, all) = (finished.len(), cases.len());
@@ -280,14 +251,14 @@ fn claim(
 
 /// Sweeps out a folder's results, which no other program may be writing. What this program did not write stays.
 fn throw_away(folder: &Path) -> Result<()> {
-    let of_series = files_in(&folder.join(SERIES))?;
+    let of_series = journal::files_in(&folder.join(SERIES))?;
     let tables = [TABLE, REPORT].map(|name| folder.join(name));
     for path in journal::free_journals(folder)?.into_iter().chain(tables).chain(of_series) {
         if path.is_file() && is_recognised(&path)? {
             remove_if_there(&path)?;
         }
     }
-    for path in files_in(&folder.join(DATA))?.iter().filter(|path| path.is_dir()) {
+    for path in journal::files_in(&folder.join(DATA))?.iter().filter(|path| path.is_dir()) {
         remove_recording(path)?;
     }
     for inner in [SERIES, DATA] {
@@ -295,16 +266,6 @@ fn throw_away(folder: &Path) -> Result<()> {
         let _ = std::fs::remove_dir(folder.join(inner));
     }
     Ok(())
-}
-
-/// What is in a folder; nothing where there is none.
-fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = match std::fs::read_dir(folder) {
-        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(|error| Error::file(folder, error))?,
-    };
-    let path = |entry: std::io::Result<std::fs::DirEntry>| entry.map(|entry| entry.path());
-    entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
 fn other_study(folder: &Path, study: &Study, found: &Label) -> Error {

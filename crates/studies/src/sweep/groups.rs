@@ -5,17 +5,17 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use super::Study;
-use super::machine::Machine;
-use super::plan::SEED;
-use super::report::write_sheet;
+use super::drawing::sheet;
+use super::plan::{SEED, Study};
 use super::results::{RunResult, RunsTable, Status};
-use super::statistics::mean;
+use super::run_group::RunGroup;
 use crate::error::{Error, Result};
+use crate::harness::{Effort, Machine, write_sheet};
 use crate::output::write_file;
 use crate::solver::worst;
+use crate::statistics::mean;
 
 pub(super) const REPORT: &str = "report.json";
 const CHART: &str = "chart";
@@ -23,39 +23,12 @@ const CHART: &str = "chart";
 #[derive(Serialize)]
 struct SweepReport<'a> {
     program: &'static str,
-    version: String,
-    processor: String,
-    cores: usize,
-    date: String,
-    command: String,
+    #[serde(flatten)]
+    machine: &'a Machine,
     study: &'a str,
     runs: usize,
     core_secs: f64,
     groups: Vec<RunGroup>,
-}
-
-/// Runs that differ in their start alone.
-#[derive(Default, Serialize)]
-pub(super) struct RunGroup {
-    /// What varies between groups.
-    pub settings: Map<String, Value>,
-    /// Runs that have a number: those that came to an end and lost no grain.
-    pub starts: usize,
-    /// Those that did not.
-    pub spoilt: usize,
-    /// Mean slump, and half its 95 % interval; `null` where no start has one, and where one start proves nothing.
-    pub slump: [f64; 2],
-    /// The same of this slump less that under the first value of a list, all else alike, over the starts of both. By the
-    /// first name of the list.
-    pub less_first: BTreeMap<String, [f64; 2]>,
-    /// Share of the steps that were not solved as asked.
-    pub unsolved: f64,
-    /// The largest bound that a step had on the velocities' error, m/s; `null` where a state was no longer finite.
-    pub largest_velocity_error: f64,
-    /// The largest of the runs' mean overlaps, d.
-    pub mean_overlap: f64,
-    /// Time of a run in the mean, s.
-    pub secs: f64,
 }
 
 /// Writes the report of a study whose runs are all there, and its chart. `version` is the program's.
@@ -66,17 +39,12 @@ pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &st
     let machine = Machine::this(version)?;
     let groups = groups(study, table)?;
     if let Some(chart) = &study.chart {
-        let sheet = chart.sheet(&groups, &machine, study.is_quick_pass);
+        let sheet = sheet(chart, &groups, &machine, Effort::new(study.is_quick_pass));
         write_sheet(folder, CHART, &sheet, &machine.command)?;
     }
-    let Machine { version, processor, cores, date, command, .. } = machine;
     let report = SweepReport {
         program: "slump",
-        version,
-        processor,
-        cores,
-        date,
-        command,
+        machine: &machine,
         study: &study.name,
         runs: table.rows.len(),
         core_secs: table.wall_secs.iter().sum(),

@@ -1,0 +1,69 @@
+//! Files below the folder of a recording: how they are named, found and removed.
+
+use std::io::ErrorKind::NotFound;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+use crate::output::final_name;
+
+/// The list of frames that are there in every format.
+pub(super) const FRAMES: &str = "frames.csv";
+/// What the name of a part of a table in Parquet begins with, …
+const BEGINNING_OF_PART: &str = "part-";
+/// … and ends with.
+const ENDING_OF_PART: &str = ".parquet";
+
+/// The plain files of a folder whose names are a recording's, sorted, with the drafts of such files that kills have
+/// left; none if there is no folder. Links and pipes are left out.
+pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
+    let refuse = |error| Error::file(folder, error);
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(refuse(error)),
+    };
+    let mut files = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(refuse)?;
+        let is_plain = entry.file_type().map_err(refuse)?.is_file();
+        if is_plain && entry.file_name().to_str().is_some_and(|name| is_ours(final_name(name))) {
+            files.push(entry.path());
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Removes a file.
+pub(super) fn remove(path: &Path) -> Result<()> {
+    std::fs::remove_file(path).map_err(|error| Error::file(path, error))
+}
+
+/// Makes a folder if it is missing.
+pub(super) fn make_folder(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path)
+        .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
+}
+
+/// The part of that number in a table's folder.
+#[cfg(feature = "data")]
+pub(super) fn path_of_part(folder: &Path, number: u64) -> PathBuf {
+    folder.join(format!("{BEGINNING_OF_PART}{number:05}{ENDING_OF_PART}"))
+}
+
+/// The number of the part of a table that has this name.
+pub(super) fn part_number(name: &str) -> Option<u64> {
+    let digits = name.strip_prefix(BEGINNING_OF_PART)?.strip_suffix(ENDING_OF_PART)?;
+    digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?
+}
+
+/// The parts in a table's folder with their numbers, by which they are sorted.
+pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
+    let paths = files_named(folder, |name| part_number(name).is_some())?;
+    let number = |path: &Path| path.file_name().and_then(|name| part_number(name.to_str()?));
+    let numbered = paths.into_iter().filter_map(|path| Some((number(&path)?, path)));
+    let mut numbered: Vec<_> = numbered.collect();
+    // Beyond 99999 parts, names have more digits and sort otherwise.
+    numbered.sort();
+    Ok(numbered)
+}

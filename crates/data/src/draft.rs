@@ -1,0 +1,28 @@
+//! A file that has no name yet: on disk, or in memory if there is no disk.
+
+use std::path::Path;
+
+/// A file without a name.
+#[cfg(not(target_arch = "wasm32"))]
+pub type DraftFile = std::fs::File;
+/// A file without a name.
+#[cfg(target_arch = "wasm32")]
+pub type DraftFile = crate::memory::MemoryFile;
+
+/// Makes a file without a name in a folder. The file disappears with the process, however the process ends.
+///
+/// # Errors
+/// If the system cannot make a file.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn nameless_file(folder: &Path) -> std::io::Result<DraftFile> {
+    tempfile::tempfile_in(folder)
+}
+
+/// Makes a file without a name in memory.
+///
+/// # Errors
+/// None.
+#[cfg(target_arch = "wasm32")]
+pub fn nameless_file(_: &Path) -> std::io::Result<DraftFile> {
+    Ok(DraftFile::default())
+}

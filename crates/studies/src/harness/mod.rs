@@ -1,0 +1,23 @@
+//! The harness of all experiments: cases, their journal, the runner, the machine they are timed on, and reports.
+
+mod bench;
+mod case;
+mod change;
+mod effort;
+pub(crate) mod journal;
+mod machine;
+mod measurements;
+mod report;
+mod runner;
+mod shard;
+
+pub(crate) use self::bench::Bench;
+pub(crate) use self::case::{Case, FinishedCase};
+pub(crate) use self::change::Change;
+pub(crate) use self::effort::Effort;
+pub(crate) use self::journal::Journal;
+pub(crate) use self::machine::Machine;
+pub(crate) use self::measurements::{MeasuredCase, Measurements, RunReadings, named};
+pub(crate) use self::report::{ReportTable, distinct, write_sheet};
+pub(crate) use self::runner::{Runner, Threads};
+pub use self::shard::Shard;

@@ -1,0 +1,40 @@
+//! The axes, curves and panels that a study asks for.
+
+use serde::Deserialize;
+
+use crate::error::{Error, Result};
+
+/// What a sweep draws, by the names of settings that vary.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepChart {
+    /// The setting on the x axis.
+    pub x: String,
+    /// A curve for each of its values.
+    pub curves: String,
+    /// A panel for each combination of their values.
+    #[serde(default)]
+    pub panels: Vec<String>,
+    /// Runs that have this value of a setting are level lines, against which the reader compares the others.
+    #[serde(default)]
+    pub level: toml::Table,
+}
+
+impl SweepChart {
+    /// # Errors
+    /// If it names something that does not vary.
+    pub(super) fn check(&self, varied: &[Vec<String>]) -> Result<()> {
+        let names = || varied.iter().flatten();
+        let one = [("chart.x", &self.x), ("chart.curves", &self.curves)].into_iter();
+        let panels = self.panels.iter().map(|name| ("chart.panels", name));
+        let levels = self.level.keys().map(|name| ("chart.level", name));
+        for (field, name) in one.chain(panels).chain(levels) {
+            if !names().any(|varied| varied == name) {
+                let all: Vec<&str> = names().map(String::as_str).collect();
+                let allowed = format!("a setting that varies: {}", all.join(", "));
+                return Err(Error::value(field, name, allowed));
+            }
+        }
+        Ok(())
+    }
+}
