@@ -6,7 +6,7 @@ mod parquet;
 mod rows;
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ::csv::ReaderBuilder;
 
