@@ -104,7 +104,11 @@ fn last_step(folder: &Path) -> Result<Option<u64>> {
 }
 
 #[cfg(not(feature = "data"))]
-fn read_parts(path: &Path, _: &[(u64, PathBuf)], _: Option<u64>) -> Result<RecordedGrains> {
+fn read_parts(
+    path: &Path,
+    _: &[(u64, std::path::PathBuf)],
+    _: Option<u64>,
+) -> Result<RecordedGrains> {
     let reason = "is Parquet, but must be CSV in this build, which has not the feature data";
     Err(Error::file(path, reason))
 }
