@@ -78,8 +78,8 @@ pub struct Grains {
     pub feels_gravity: Vec<bool>,
     /// Greys for pictures in the style of the paper.
     pub tones: Vec<u8>,
-    /// Displacement added to each disc by periodic borders since the start, m. A centre minus this displacement is
-    /// the unwrapped position.
+    /// Displacement that periodic borders have subtracted from each centre since the start, m. Added to the centre,
+    /// it gives the unwrapped position.
     pub brought_back: Vec<DVec2>,
     /// Permanent numbers: a grain's index in the scene. Grains added later have numbers above those of all other
     /// bodies.

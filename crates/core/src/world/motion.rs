@@ -110,8 +110,8 @@ impl Motion {
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
     }
 
-    /// The velocity before the next `secs`, as seen by the grains. For a sine it is the mean over the `secs` before.
-    /// Other courses change their velocity only by jumps, and a jump of a wall's velocity strikes the grains.
+    /// The velocity from which the course passes smoothly to that of the next `secs`: for a sine, the mean over the
+    /// `secs` before. Other courses change velocity only by jumps, and a jump of a wall's velocity strikes the grains.
     pub(crate) fn velocity_before(&self, secs: f64) -> RigidVelocity {
         match &self.course {
             Some(course @ (MotionCourse::Sine { .. } | MotionCourse::Swing { .. })) => {

@@ -229,7 +229,7 @@ impl Parameters {
         (secs / self.time_step_secs).round() as u64
     }
 
-    /// Checks that a simulated time (s) does not take more than [`MOST_STEPS`] steps.
+    /// Checks that a simulated time (s) takes a practicable number of steps.
     ///
     /// # Errors
     /// Names `field`, the option that sets the time, or Δt if that is unusually small.

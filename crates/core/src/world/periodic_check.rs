@@ -53,7 +53,7 @@ impl Periodic {
         Ok(())
     }
 
-    /// Checks that sheared borders cut no fixed body and have everything they need.
+    /// Checks that sheared borders have finite rates, both axes, friction and rotation, and no fixed bodies.
     fn check_shear(self, fixed_bodies: usize, physics: Physics) -> Result<()> {
         let Self { shear_rate, shift, .. } = self;
         let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];
