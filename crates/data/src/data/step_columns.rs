@@ -1,4 +1,4 @@
-//! The columns of the table of steps: what each step measured.
+//! The columns of the table of steps: the measurements of each step.
 
 use crate::column_spec::CellValue::{Count, Flag, Number, SomeNumber};
 use crate::column_spec::{ColumnSpec, column};
