@@ -40,7 +40,7 @@ impl Simulation {
         columns(py, Table::of_contacts(&moment))
     }
 
-    /// Walls and other bodies that the grains do not move: position, velocity, force, torque and work, as a table.
+    /// Walls and fixed discs, one row per rigid body: position, velocity, force, torque and work, as a table.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
