@@ -122,7 +122,7 @@ pub fn without_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
     scene(Physics::FULL, DVec2::ZERO, parameters, grains)
 }
 
-/// All pairs of stepper and method.
+/// All steppers, each with every method if it uses methods.
 pub fn every_way() -> Vec<(Stepper, Method)> {
     let of = |&stepper: &Stepper| {
         let count = if stepper.uses_method() { METHODS.len() } else { 1 };
