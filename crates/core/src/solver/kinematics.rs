@@ -128,8 +128,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     fn from_coordinates<T: Lanes>(coordinates: [T; 3]) -> Self::Body<T>;
     /// Sets the coordinates of a body; entries that are not degrees of freedom of the model stay unchanged.
     fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
-    /// Derivatives of (v_n, v_t) by the coordinates of i, then of j: v_n = Σ \[body\]\[0\]·coordinates, v_t = Σ
-    /// \[body\]\[1\]·coordinates.
+    /// Derivatives of (v_n, v_t) by the coordinates of i, then of j: v_n = Σ \[body\]\[0\]·coordinates,
+    /// v_t = Σ \[body\]\[1\]·coordinates.
     fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2];
     /// Work of the gravity impulse M(`free` − `before`) in a step that ends as `after`, J: the
     /// impulse times the mean velocity (see `solver::measure`).

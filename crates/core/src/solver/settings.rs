@@ -59,9 +59,9 @@ impl FrictionModel {
 settings! {
     /// Method, stopping test and limits. This is plain data, which is checked when a simulation takes it.
     ///
-    /// By default each step is solved under Coulomb's law to an estimated velocity error of 1e-4 √(g d), which does not
-    /// change the slump of a pile. A flowing step of thousands of grains ends with a larger error, which is reported
-    /// ([`Measures::velocity_error`](super::Measures)).
+    /// By default each step is solved under Coulomb's law to an estimated velocity error of 1e-4 √(g d), which is too
+    /// small to affect the slump of a pile. A flowing step of thousands of grains ends with a larger error, which is
+    /// reported ([`Measures::velocity_error`](super::Measures)).
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Method that solves each step", {

@@ -145,7 +145,7 @@ mod tests {
         assert!(kinds.iter().all(|&count| count > 50), "each kind arose: {kinds:?}");
     }
 
-    /// The two cones differ where cohesion alone holds a sliding contact.
+    /// The two cones differ if cohesion alone holds a sliding contact.
     #[test]
     fn a_pulling_contact_rubs_in_the_shifted_cone_alone() {
         let block = LocalBlock::new([[2.0, 0.0], [0.0, 6.0]], 0.5, 1.0);

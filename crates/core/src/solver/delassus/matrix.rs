@@ -1,8 +1,8 @@
 //! Assembles W and q of a step's problem; checks W given by its entries, and sorts it into 2×2 blocks.
 //!
-//! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in these coordinates, W
-//! = G M⁻¹ Gᵀ and q = G v^free, plus the restitution term in the normal rows. A contact is coupled to the contacts that
-//! share one of its grains and to no others: n contacts of one grain give n² blocks.
+//! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in these coordinates,
+//! W = G M⁻¹ Gᵀ and q = G v^free, plus the restitution term in the normal rows. A contact is coupled only to contacts
+//! that share one of its grains: n contacts of one grain give n² blocks.
 
 use crate::error::{self, Error, Result};
 use crate::solver::kinematics::Model;
@@ -77,7 +77,7 @@ pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBloc
         if blocks.last().is_none_or(|(last, _)| *last != place) {
             blocks.push((place, [[0.0; 2]; 2]));
         }
-        // A block has just been pushed where there was none.
+        // A block has just been pushed if there was none.
         let (_, block) = blocks.last_mut().expect("a block");
         block[row[entry] as usize % 2][col[entry] as usize % 2] += val[entry];
     }

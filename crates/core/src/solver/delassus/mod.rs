@@ -1,8 +1,9 @@
 //! A contact problem given by the Delassus operator alone: u = W r + q, without any bodies.
 //!
 //! W (1/kg) is the change of the velocity of one contact per impulse of another; q (m/s) is the relative velocity
-//! without contact impulses, restitution term included. Rows and columns are ordered as N0, T0, N1, T1, … and r = (P_n,
-//! P_t), in N·s. The law is that of `contact::law`; each contact has its own cohesion impulse c₀ = C₀Δt and friction μ:
+//! without contact impulses, restitution term included. Rows and columns are ordered as N0, T0, N1, T1, …, and
+//! r = (P_n, P_t) in N·s. The law is that of `contact::law`; each contact has its own cohesion impulse c₀ = C₀Δt and
+//! friction μ:
 //!
 //! > 0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp (shifted cone) or ≤ μ max(p − c₀, 0) (compressive), p = P_n + c₀.
 //!
@@ -153,8 +154,8 @@ impl DelassusProblem {
         (0..self.len()).map(|contact| self.velocity(contact))
     }
 
-    /// The residual of the natural map, as [`residual`](crate::solver::residual) for bodies, with m_n = 1/W_nn, m_t =
-    /// 1/W_tt, and u and v^free from W and q. W_nt ≠ 0 is no restriction: the map is zero exactly if the law is
+    /// The residual of the natural map, as [`residual`](crate::solver::residual) for bodies, with m_n = 1/W_nn,
+    /// m_t = 1/W_tt, and u and v^free from W and q. W_nt ≠ 0 is no restriction: the map is zero exactly if the law is
     /// satisfied, for any positive m_n and m_t. If μ = 0, the tangential part of a contact does not enter the scale.
     pub fn residual(&self) -> f64 {
         let errors = self.rows.iter().enumerate().map(|(contact, row)| {

@@ -1,8 +1,8 @@
 //! Estimated distance of the velocities of a step from those of its solution.
 //!
 //! **The gap.** Let p be allowed impulses and V the velocities that they make, with w and v of each contact as in
-//! `problem::friction`. Let z ≥ 0 be the shortfall of w, the least value with w + z ≥ 0 within friction bounds g, or w
-//! + s + z ≥ μ|v| on the cone. V solves the dual of a problem in which z is added to w. The two energies of that
+//! `problem::friction`. Let z ≥ 0 be the shortfall of w, the least value with w + z ≥ 0 within friction bounds g, or
+//! w + s + z ≥ μ|v| on the cone. V solves the dual of a problem in which z is added to w. The two energies of that
 //! problem differ by
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,

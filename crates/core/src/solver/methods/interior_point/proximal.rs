@@ -16,8 +16,8 @@
 //! 2022). F is quadratic as long as the pieces of Π stay the same, so a full step within one piece reaches the minimum.
 //! Along a line F′ is piecewise linear and rising; its root is found by Newton's method.
 //!
-//! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to M(V −
-//! V_free), because a small ε magnifies rounding errors.
+//! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to
+//! M(V − V_free), because a small ε magnifies rounding errors.
 
 use super::contact::Shape;
 use super::point::{InteriorPoint, PathWorkspace};
