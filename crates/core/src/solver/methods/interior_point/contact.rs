@@ -1,8 +1,8 @@
 //! A contact in the interior point method, and its part in a Newton step.
 //!
 //! A model of friction allows impulses p = (σ, λ) with G p + h ≥ 0. The rows of G are (1, 0) for σ ≥ 0 and (κ, ±1) for
-//! the two sides of friction; κ = μ if the bound grows with σ, and κ = 0 if the bound is lagged. With slacks x = G
-//! p + h and multipliers y, the solution satisfies
+//! the two sides of friction; κ = μ if the bound grows with σ, and κ = 0 if the bound is lagged. With slacks
+//! x = G p + h and multipliers y, the solution satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
