@@ -329,7 +329,7 @@ fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
     }
 }
 
-/// At constant speed a wall's work is m g h to lift a grain, ½mv² to accelerate it, and as much again, which the shock takes.
+/// At constant speed a wall's work is m g h to lift a grain, ½mv² to accelerate it, and ½mv² that the shock takes.
 #[test]
 fn the_work_of_a_wall_is_what_it_lifts() {
     for (stepper, method) in every_way() {

@@ -161,7 +161,7 @@ fn what_is_left_open_is_what_it_was_and_what_is_given_sets_the_substeps() {
     assert!(critical(stiffness, 10.0).0 < 0.5 * secs, "a stronger dashpot");
 }
 
-/// Contact time of two colliding discs, s, found and expected; then the ratio of final to initial speed, found and expected.
+/// Contact time of two colliding discs, s, and the ratio of final to initial speed; each found, then expected.
 fn collision(physics: Physics, stiffness: f64, damping_ratio: f64, parts: f64) -> [f64; 4] {
     let mut scene = by(Stepper::Dem, 1, meeting(physics, 0.1, 1e-3));
     scene.parameters.stiffness = stiffness;
