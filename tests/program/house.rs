@@ -159,7 +159,7 @@ fn documents_name_files_that_are_there() {
     assert!(gone.is_empty(), "{gone:#?}");
 }
 
-/// `f64::max` and `f64::min` may return 0.0 or -0.0; [`slump_core::number::Parts`] is defined.
+/// Of 0.0 and -0.0, `f64::max` and `f64::min` may return either; [`slump_core::number::Parts`] always returns the same.
 #[test]
 fn no_sign_of_a_zero_depends_on_the_compiler() {
     let sources = sources();
