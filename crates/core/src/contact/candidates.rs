@@ -29,7 +29,7 @@ pub struct Reach {
 
 /// Candidate pairs of a world.
 ///
-/// Serialised are the pairs found and the positions at which they were found, because the rebuild schedule depends on
+/// A file contains the pairs found and the positions at which they were found, because the rebuild schedule depends on
 /// them. All other fields are rebuilt from the world.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
