@@ -58,7 +58,7 @@ pub struct Alarm {
     /// The longest time step that would help, s, if it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_time_step_secs: Option<f64>,
-    /// The stiffness of the springs that gave way, N/m, if stiffer ones would help.
+    /// The stiffness of the springs that yielded, N/m, if stiffer ones would help.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
     /// Number of occurrences so far, if they are counted.

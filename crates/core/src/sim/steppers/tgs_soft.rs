@@ -8,8 +8,8 @@
 //! 2. the impulses of the substep before are applied (warm start);
 //! 3. one sweep over **soft** contacts: v_n + b = −c σ, each an overdamped spring at the gap;
 //! 4. the grains move for h, and each gap changes by h v_n;
-//! 5. one sweep over **rigid** contacts, v_n = 0: it takes the push-out speed out again, so that
-//!    only positions keep it, and no energy comes of it.
+//! 5. one sweep over **rigid** contacts, v_n = 0: it removes the push-out speed again, so that it
+//!    only affects positions and adds no energy.
 //!
 //! At the end of the step, contacts that pushed get the speed required by restitution. Its threshold is that of the
 //! step's problem: contacts that met at less than `restitution_threshold` g·Δt, or were opening, do not bounce.
