@@ -1,6 +1,5 @@
 //! Helpers of the physics tests: common imports, short ways to build scenes and inspect runs, and comparisons that
-//! report
-//! the difference.
+//! report the difference.
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
@@ -152,8 +151,7 @@ pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
 }
 
 /// Velocity error of the next step's first problem against the friction model that is solved, by the measure that
-/// stops the
-/// solver, m/s.
+/// stops the solver, m/s.
 pub fn error_against_model(simulation: &Simulation) -> f64 {
     struct OfModel(SolverSettings);
 
@@ -195,8 +193,7 @@ pub fn random(seed: u64) -> Pcg64 {
 }
 
 /// `count` discs pressed together on a lattice over a rough base, so that about half of all neighbours overlap.
-/// Velocities
-/// and spins times radius are about `speed` (m/s).
+/// Velocities and spins times radius are about `speed` (m/s).
 pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters) -> Scene {
     let mut random = random(seed);
     let diameter = 5e-3;
@@ -223,10 +220,9 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
     Scene { fixed_discs: rough_base(columns as f64 + 2.0, diameter), ..under_g(parameters, grains) }
 }
 
-/// Logs at rest; beside them a spinning disc that falls on the floor, a disc that overlaps the floor, and a disc whose
-/// stretched bond to the floor survives. These discs touch no other grain: with friction, several solutions would
-/// exist
-/// and rounding would choose one.
+/// Logs at rest; beside them a spinning disc that falls on the floor, a disc that overlaps the floor, and a disc
+/// whose stretched bond to the floor survives. These discs touch no other grain: with friction, several solutions
+/// would exist and rounding would choose one.
 pub fn at_rest_and_falling() -> Scene {
     let mut scene = logs(1.0);
     let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
@@ -305,8 +301,7 @@ pub fn in_each_way(
 }
 
 /// Takes a step. Returns its observables, the change of kinetic energy that the works do not explain, and the sum of
-/// the
-/// magnitudes of all works and both energies, J.
+/// the magnitudes of all works and both energies, J.
 pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     let before = run.observables().kinetic_energy;
     let after = *run.step().expect("a finite state");

@@ -1,6 +1,5 @@
 //! An independent check of a solved step, written from the design. It uses positions, velocities and impulses, and
-//! none of
-//! the solver's arithmetic.
+//! none of the solver's arithmetic.
 
 use glam::DVec2;
 use slump::sim::Simulation;
@@ -16,8 +15,7 @@ pub struct Judged {
     pub after: [f64; 2],
     pub free: [f64; 2],
     /// Term that the law adds to v_n at the end, m/s: ρ times the initial v_n, or the speed that closes a gap within
-    /// the touch
-    /// tolerance.
+    /// the touch tolerance.
     pub rebound: f64,
 }
 

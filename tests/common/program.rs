@@ -13,8 +13,7 @@ pub use tempfile::TempDir;
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The program that was built with these tests, or the program that `SLUMP_PROGRAM` names: a program with fewer
-/// features is
-/// tested without rebuilding the tests. `line` has the first arguments, separated by blanks.
+/// features is tested without rebuilding the tests. `line` has the first arguments, separated by blanks.
 pub fn slump(line: &str) -> Command {
     let built = || assert_cmd::cargo::cargo_bin!("slump").to_path_buf();
     let mut command =

@@ -154,8 +154,7 @@ fn a_mirrored_scene_moves_mirrored() {
 #[test]
 fn renumbered_grains_move_alike_where_the_solution_is_unique() {
     // Without friction the velocities that solve a step are unique. The order of the sweep, which follows the
-    // numbering, may
-    // change them only within the tolerance.
+    // numbering, may change them only within the tolerance.
     for bond in [0.0, 20.0] {
         let mut scene = Scene { physics: SMOOTH, solver: tight(), ..pressed(bond) };
         scene.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
@@ -173,8 +172,7 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
 }
 
 /// Three discs on a floor and two on top, all overlapping. When friction bounds came from sweeps in the order of the
-/// numbers,
-/// swapping the upper two in the list changed the spin of the last disc by 0.08 rad/s.
+/// numbers, swapping the upper two in the list changed the spin of the last disc by 0.08 rad/s.
 #[test]
 fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
     let discs = [

@@ -96,8 +96,7 @@ fn parts_of_a_budget_join_to_what_one_machine_comes_to_and_cost_it_nothing() {
 }
 
 /// A disc in free fall from rest: y = −g t (t + Δt)/2 with semi-implicit steps, so the height lost at t is known,
-/// with an error
-/// that is linear in Δt.
+/// with an error that is linear in Δt.
 const FALL: &str = "
 name = 'fall'
 mean_diameter = 1.0

@@ -1,6 +1,5 @@
 //! Other people's files: the program reads only plain files, stops reading files without an end, and removes only
-//! files that it
-//! wrote.
+//! files that it wrote.
 #![cfg(unix)]
 
 use crate::program::*;

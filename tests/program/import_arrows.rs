@@ -2,10 +2,8 @@
 //! circle.
 //!
 //! An arrow points from a file to the file that defines an item that the first file names, in a `use` or in a path
-//! that begins
-//! with `crate`, `self` or `super`. Re-exports of a `mod.rs` or `lib.rs` are followed to the defining file and are no
-//! arrows
-//! themselves. Test modules do not count.
+//! that begins with `crate`, `self` or `super`. Re-exports of a `mod.rs` or `lib.rs` are followed to the defining
+//! file and are no arrows themselves. Test modules do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,6 +1,5 @@
 //! Input that needs more than any machine has is refused at once, in a sentence that names it. The cost of refusing
-//! and planning
-//! grows with the size of the input.
+//! and planning grows with the size of the input.
 
 use std::fmt::Write as _;
 

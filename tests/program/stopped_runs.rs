@@ -262,8 +262,7 @@ fn a_scale_that_is_none_or_of_nothing_is_refused() {
 }
 
 /// A chain of frictionless contacts, each of which pushes the next. Each sweep transmits a push by one contact, so a
-/// long chain
-/// needs millions of sweeps.
+/// long chain needs millions of sweeps.
 fn chain(contacts: usize, path: &Path) {
     let (mut row, mut col, mut val) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |at: [usize; 2], value: f64| {

@@ -1,6 +1,5 @@
 //! Piles made by drop and roll: final places of single discs, properties of all packings, and settled piles that stay
-//! at
-//! rest.
+//! at rest.
 
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -13,8 +12,7 @@ use crate::program::*;
 const FLOOR: f64 = -10.0;
 
 /// A dropped disc: name, half width, discs (place and radius), start and radius, expected place, and expected
-/// supports if
-/// they are checked.
+/// supports if they are checked.
 type Drop<'a> =
     (&'a str, f64, &'a [[f64; 3]], [f64; 2], [f64; 2], Option<(Support, Option<Support>)>);
 
@@ -85,8 +83,7 @@ fn single_discs_come_to_lie_where_geometry_says() {
         ),
         ("against the wall", 2.2, &one, [0.5, 1.0], [1.2, 1.6], on(Support::Wall)),
         // The disc starts beside the first and passes below the second, which must not catch it from above. It leaves
-        // the first at
-        // x = 2 and then the left side of the third at x = 0.5.
+        // the first at x = 2 and then the left side of the third at x = 0.5.
         (
             "past what hangs over",
             50.0,

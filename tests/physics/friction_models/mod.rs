@@ -1,6 +1,5 @@
 //! The convex friction models: the exact effect of each on one contact, and that the problem that replaces Coulomb's
-//! law has
-//! one solution, which the solver finds.
+//! law has one solution, which the solver finds.
 
 mod piles;
 

@@ -1,6 +1,5 @@
 //! Piles under every convex model: the solver solves the model, whose solution is unique. Also: steps that are not
-//! solved under
-//! Coulomb's law.
+//! solved under Coulomb's law.
 
 use proptest::prelude::*;
 
@@ -170,8 +169,7 @@ fn every_step_of_a_pile_that_slumps_is_solved_within_its_model() {
 }
 
 /// Velocity errors against Coulomb's law, m/s, from world data, as defined in `solver::problem::velocity_error`: the
-/// root of the
-/// gap over the mass of touching bodies, and the movement that all contacts need to be fulfilled.
+/// root of the gap over the mass of touching bodies, and the movement that all contacts need to be fulfilled.
 fn errors_of_world(run: &Simulation, pile: &Scene, before: &Simulation) -> [f64; 2] {
     let (mut gap, mut touches) = (0.0, vec![false; run.grains().len()]);
     let grains = run.grains().len();
@@ -253,8 +251,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     // The error is the root of the gap, which is the impulses times their errors. Of two solves the one with the
-    // smaller residual
-    // may have the larger error: 1.8e-5 m/s at a residual of 0.9e-8, but 1.6e-5 m/s at 1.1e-8.
+    // smaller residual may have the larger error: 1.8e-5 m/s at a residual of 0.9e-8, but 1.6e-5 m/s at 1.1e-8.
     #[test]
     fn the_error_against_a_model_falls_with_the_root_of_its_residual(
         seed in 0u64..1000,
@@ -283,8 +280,7 @@ proptest! {
 }
 
 /// A disc wedged between two fixed ones. The cones leave it no way out: at each contact it would have to leave at
-/// more than
-/// the angle atan μ from the tangent.
+/// more than the angle atan μ from the tangent.
 #[test]
 fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
     let radius = 0.1;

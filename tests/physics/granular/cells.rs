@@ -19,8 +19,7 @@ fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usi
 }
 
 /// Cell areas by counting the points of a raster with `steps` steps along the box around all grains: within the box,
-/// and
-/// within the whole room.
+/// and within the whole room.
 fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64; 2]> {
     let grains = &moment.grains;
     let radii: f64 = grains.iter().map(|grain| grain.radius).sum();

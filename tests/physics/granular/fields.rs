@@ -8,8 +8,7 @@ use slump::sim::Moment;
 use crate::common::*;
 
 /// Moving scenes and the number of steps to the moment: with walls, with borders that wrap along x, along both axes,
-/// and with
-/// shear.
+/// and with shear.
 const SCENES: [(&str, u64); 5] =
     [("pile", 60), ("collapse", 100), ("shear", 400), ("shear-periodic", 300), ("drum", 200)];
 

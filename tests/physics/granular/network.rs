@@ -1,6 +1,5 @@
 //! Rattlers, clusters, fractions of contacts and force distributions that can be counted by hand; moments with few or
-//! no
-//! measures.
+//! no measures.
 
 use super::packings::{RADIUS, among, box_walls, disc, discs, lean, touch, triangular_discs};
 use crate::common::*;
@@ -8,8 +7,7 @@ use crate::common::*;
 const EXACT: f64 = 1e-12;
 
 /// A ring of four discs with a chain of two attached and a disc inside that pushes no other. Beside it two discs
-/// press each
-/// other, and one is isolated.
+/// press each other, and one is isolated.
 fn ring_and_chain() -> Moment {
     let place = |x: f64, y: f64| disc(2.0 * RADIUS * DVec2::new(x, y), RADIUS);
     let ring = [place(0.0, 0.0), place(1.0, 0.0), place(1.0, 1.0), place(0.0, 1.0)];

@@ -16,8 +16,7 @@ fn virial(pile: &PileMeasures) -> [f64; 4] {
 }
 
 /// Like [`virial`], computed from outside: the contact force on each grain times its place, minus the forces on fixed
-/// bodies
-/// times their contact points.
+/// bodies times their contact points.
 fn virial_from_outside(
     moment: &Moment,
     before: &Moment,

@@ -149,10 +149,8 @@ fn a_grain_that_is_added_in_motion_is_one_of_the_scene() {
 }
 
 /// Errors of the last step's balances: the largest part of a grain's momentum change that weight, body forces and
-/// contacts do
-/// not explain, over the largest body force times Δt; and the difference between kinetic energy change and works,
-/// over the
-/// kinetic energy.
+/// contacts do not explain, over the largest body force times Δt; and the difference between kinetic energy change
+/// and works, over the kinetic energy.
 fn left_open(run: &mut Simulation) -> [f64; 2] {
     let before = run.world().grains.velocities.clone();
     let energy = run.observables().kinetic_energy;

@@ -57,8 +57,7 @@ fn a_free_cluster_keeps_its_momentum() {
 #[test]
 fn the_overlap_alone_changes_the_angular_momentum() {
     // The impulses of a pair act at r_i from one centre and r_j from the other, but the centres are only r_i + r_j +
-    // gap apart:
-    // P_t on both exerts the couple gap·P_t. Nothing else changes the angular momentum.
+    // gap apart: P_t on both exerts the couple gap·P_t. Nothing else changes the angular momentum.
     let mut run = start(&cluster(Physics::FULL, 30.0, 0.3, 0.5));
     let (mut explained, mut largest) = (0.0, 0f64);
     let (_, scale) = angular_momentum(&run);
@@ -124,10 +123,9 @@ fn every_step_of_a_cohesive_pile_closes_its_energy_budget() {
 
 #[test]
 fn contacts_with_one_restitution_lose_what_moreaus_theorem_says() {
-    // Without friction, cohesion and gravity, u^n − u^{n−1} = W P and P ⟂ v̄ give the work
-    // ½P·(u^n + u^{n−1}) = P·v̄ − ½ (1−ρ)/(1+ρ) P·WP, and P·WP = Σ m |v^n − v^{n−1}|²: kinetic energy never grows,
-    // falls by exactly
-    // that amount, and is constant for ρ = 1.
+    // Without friction, cohesion and gravity, u^n − u^{n−1} = W P and P ⟂ v̄ give the work ½P·(u^n + u^{n−1}) = P·v̄
+    // − ½ (1−ρ)/(1+ρ) P·WP, and P·WP = Σ m |v^n − v^{n−1}|²: kinetic energy never grows, falls by exactly that
+    // amount, and is constant for ρ = 1.
     for restitution in [0.0, 0.3, 0.7, 1.0] {
         let mut scene = cluster(SMOOTH, 0.0, restitution, 0.0);
         scene.solver = tight();

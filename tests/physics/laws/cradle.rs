@@ -63,8 +63,7 @@ fn share_lost(dt: f64, tolerance: f64) -> f64 {
 #[test]
 fn the_share_of_lost_bonds_grows_with_the_time_step() {
     // The expected fractions are those over 5,000 initial heights (0.51, 0.86; 0.51, 0.79) or, with the preset's stop
-    // test, those
-    // of another implementation over 500 (0.52, 0.85).
+    // test, those of another implementation over 500 (0.52, 0.85).
     for (dt, tolerance, expected, of) in [
         (4e-3, 2.2e-3, 0.52, 500.0),
         (1e-2, 2.2e-3, 0.85, 500.0),
@@ -82,9 +81,8 @@ fn the_share_of_lost_bonds_grows_with_the_time_step() {
 #[test]
 fn no_bond_is_lost_where_the_residual_opens_less_than_the_gap_tolerance() {
     // The stop test of 1e-6 m/s above leaves up to 1e-6 m/s × Δt per step, more than the tolerance of 1e-9 m, so the
-    // contact and
-    // its cohesion are lost. If the error of a step is below the tolerance, i and j still touch in the next step, at
-    // every Δt.
+    // contact and its cohesion are lost. If the error of a step is below the tolerance, i and j still touch in the
+    // next step, at every Δt.
     for dt in [1e-3, 4e-3, 6e-3, 1e-2] {
         assert_eq!(share_lost(dt, 1e-10), 0.0, "Δt {dt}");
     }
@@ -96,12 +94,9 @@ const OVERLAP: f64 = 1e-12;
 const TIME_STEPS: [f64; 4] = [1e-5, 1e-4, 1e-3, 5e-3];
 
 // Let m be the mass of a disc. The contact with the fixed disc has C₀ = Bond·m·g and carries n·m·g. The contact under
-// the k-th
-// disc has C₀ = Bond·(m/2)·g and carries (n − k)·m·g. So a chain holds if n < Bond and n − 1 < Bond/2: a single disc
-// falls at
-// Bond = 1, and a chain of three or more breaks under its first disc at Bond = 2(n − 1). With two discs both contacts
-// reach
-// their limits together, at Bond = 2.
+// the k-th disc has C₀ = Bond·(m/2)·g and carries (n − k)·m·g. So a chain holds if n < Bond and n − 1 < Bond/2: a
+// single disc falls at Bond = 1, and a chain of three or more breaks under its first disc at Bond = 2(n − 1). With
+// two discs both contacts reach their limits together, at Bond = 2.
 
 /// n discs below a fixed disc, in a line along gravity: `down` is x on one axis.
 fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {

@@ -1,6 +1,5 @@
 //! Shocks that run through touching grains one after the other, and shocks of walls that move along their normal:
-//! exact results
-//! and general properties.
+//! exact results and general properties.
 
 use proptest::prelude::*;
 use slump::scene::stability::{bounce, heap};
@@ -362,8 +361,7 @@ fn a_wall_that_cannot_be_is_refused_with_its_field() {
 }
 
 /// Each shock runs through the row and gives 2V to the last ball that has not been struck. In the end no contact
-/// closes, and
-/// every ball has 2V.
+/// closes, and every ball has 2V.
 #[test]
 fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
     for balls in 1..=4 {

@@ -1,6 +1,5 @@
 //! Grains that pass through walls or leave the world are reported and do not count for the slump. Contacts detected
-//! ahead of a
-//! step prevent tunnelling.
+//! ahead of a step prevent tunnelling.
 
 use slump::scene::stability::{WALL_DISTANCE, heap, thin_wall};
 
@@ -141,8 +140,7 @@ fn no_grain_leaves_a_closed_box_at_random_without_being_counted() {
 const PHASES: u32 = 20;
 
 /// A disc that flies at a thin wall with restitution ρ and `travel` diameters per step. Returns final over initial
-/// velocity for
-/// each phase of the step; negative if the disc rebounds.
+/// velocity for each phase of the step; negative if the disc rebounds.
 fn rebounds(travel: f64, restitution: f64, mend: impl Fn(&mut Scene)) -> Vec<f64> {
     let rebound = |phase| {
         let mut scene = thin_wall(travel, (f64::from(phase) + 0.5) / f64::from(PHASES));

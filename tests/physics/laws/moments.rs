@@ -1,6 +1,5 @@
 //! Reported moments: contacts against exact results, ages, unsolved steps and residuals. Also: effects of the paper's
-//! §3 in small
-//! piles.
+//! §3 in small piles.
 
 use rayon::prelude::*;
 
@@ -204,8 +203,7 @@ fn a_run_ends_where_no_number_holds_its_energy() {
 }
 
 // Piles are chaotic: any change shifts single slumps by some hundredths. Each claim is about the mean of paired
-// differences over
-// the initial states, with Student's 95 % interval.
+// differences over the initial states, with Student's 95 % interval.
 
 const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
 /// Number of initial states, and Student's t for 95 % with one degree of freedom less.

@@ -1,11 +1,10 @@
 //! A disc on a slope: Coulomb's threshold, sliding and rolling on every kind of fixed shape.
 //!
 //! The slope is a level shape under gravity inclined by θ. Per mass, g cosθ presses the disc on and g sinθ pulls it
-//! along. Without
-//! rotation it sticks up to tanθ = μ and then slides with g (sinθ − μ cosθ). With rotation it rolls without slip up to
-//! tanθ = 3μ, with ⅔ g sinθ for a solid disc. Above, it slides in the same way while its spin grows with 2μ g cosθ /
-//! r. In the
-//! scheme all of this is exact in every step and for every Δt, because one update solves one contact exactly.
+//! along. Without rotation it sticks up to tanθ = μ and then slides with g (sinθ − μ cosθ). With rotation it rolls
+//! without slip up to tanθ = 3μ, with ⅔ g sinθ for a solid disc. Above, it slides in the same way while its spin
+//! grows with 2μ g cosθ / r. In the scheme all of this is exact in every step and for every Δt, because one update
+//! solves one contact exactly.
 
 use crate::common::*;
 
@@ -128,8 +127,7 @@ fn a_vertex_of_a_nearly_flat_polyline_is_not_felt() {
 #[test]
 fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
     // For rolling without slip from rest at angle α from the top, energy gives ¾v² = g R (cosα − cosφ), where R is
-    // the distance of the
-    // centres. N = m (g cosφ − v²/R) vanishes at cosφ = 4/7 cosα.
+    // the distance of the centres. N = m (g cosφ − v²/R) vanishes at cosφ = 4/7 cosα.
     let (other, start_angle) = (0.4, 0.2f64);
     let leaving_cosine = |dt: f64| {
         let reach = other + RADIUS;
@@ -153,8 +151,7 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
     let ideal = 4.0 / 7.0 * start_angle.cos();
     for dt in [1e-3, 1e-4] {
         // Near N = 0 the two curves separate slowly, so late contacts are likely: the last one is late by about √Δt
-        // (measured: 0.75 and
-        // 0.98 of it).
+        // (measured: 0.75 and 0.98 of it).
         let off = (leaving_cosine(dt) - ideal).abs();
         assert!(off < 1.2 * dt.sqrt(), "Δt {dt}: left at {off} off the ideal cosine");
     }

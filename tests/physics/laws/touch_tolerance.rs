@@ -53,8 +53,7 @@ fn discs_bounce_from_within_the_tolerance_as_from_the_surface() {
 }
 
 /// A pair that leaves loses the energy that the pull gave it on approach. With ρ = 1 only pairs that reach the
-/// surface so slowly
-/// that they end a step there lose energy.
+/// surface so slowly that they end a step there lose energy.
 #[test]
 fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     let (mut kept, mut lost) = (0, 0);
@@ -104,9 +103,8 @@ fn a_bond_takes_its_force_times_the_tolerance_to_break() {
 }
 
 /// A pair opens by ½ω²Δt²d in a step. If the bond is barely stronger than the circle requires, the pull needs some
-/// steps to reverse
-/// this. Meanwhile the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest spin that the bond can
-/// carry.
+/// steps to reverse this. Meanwhile the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest spin that
+/// the bond can carry.
 #[test]
 fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     let break_up = (BOND * G / DIAMETER).sqrt();

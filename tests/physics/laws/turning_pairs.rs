@@ -1,6 +1,5 @@
 //! Bonded pairs that circle each other. If bonds have a length, the pairs break at the spin √(Bond g/2r). If a bond
-//! lives while its
-//! gap is below zero, they break earlier, with a warning.
+//! lives while its gap is below zero, they break earlier, with a warning.
 
 use crate::common::*;
 

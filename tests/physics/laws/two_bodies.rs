@@ -1,14 +1,11 @@
 //! One contact: the three cases of the paper's §2.2, and the force that pulls a contact open.
 //!
 //! Let v = v^{n−1} be the normal velocity at the beginning of a step, a the relative normal acceleration by external
-//! forces,
-//! c = C₀Δt/m_ij and λ = P/m_ij. The step requires (`contact::law`) 0 ≤ λ + c ⟂ u ≥ 0 with u = v^n + ρv and v^n = v +
-//! aΔt + λ. The
-//! force that gives v̄ = 0, that is u = 0, is A = −m_ij ((1 + ρ) v/Δt + a). So
+//! forces, c = C₀Δt/m_ij and λ = P/m_ij. The step requires (`contact::law`) 0 ≤ λ + c ⟂ u ≥ 0 with u = v^n + ρv and
+//! v^n = v + aΔt + λ. The force that gives v̄ = 0, that is u = 0, is A = −m_ij ((1 + ρ) v/Δt + a). So
 //!
 //! * A ≥ −C₀: λ = AΔt/m_ij fulfils the law with u = 0, and v^n = −ρ v for any a. For A > 0 the contact pushes (a
-//! closing pair
-//!   bounces), for A < 0 it pulls (an opening pair closes again);
+//!   closing pair bounces), for A < 0 it pulls (an opening pair closes again);
 //! * A < −C₀: λ = −c, and v^n = v + aΔt − C₀Δt/m_ij: the contact opens (u > 0).
 
 use crate::common::*;
@@ -244,8 +241,7 @@ fn each_bounce_keeps_the_fraction_rho_of_the_speed() {
             for (bounce, height) in heights.into_iter().enumerate() {
                 ideal *= restitution * restitution;
                 // A shock is up to one step late, so its height is wrong by up to speed × Δt, and it omits gravity
-                // for that step: at most two
-                // times speed × Δt per bounce.
+                // for that step: at most two times speed × Δt per bounce.
                 let allowed = 2.0 * (bounce + 1) as f64 * (2.0 * G * HEIGHT).sqrt() * DT;
                 let off = (height - ideal).abs();
                 assert!(off <= allowed, "ρ {restitution}, bounce {bounce}: {height} for {ideal}");
@@ -277,8 +273,7 @@ fn without_restitution_the_first_shock_is_the_last() {
 #[test]
 fn cohesion_holds_what_bounces_slower_than_the_capture_speed() {
     // The shock itself is equal (A > 0). The next step pulls back by Bond·g·Δt; if that is more than (1 + ρ) times
-    // the speed, the
-    // contact closes again.
+    // the speed, the contact closes again.
     let (restitution, speed) = (0.5, (2.0 * G * HEIGHT).sqrt());
     for (times, escapes) in [(0.8, true), (1.2, false)] {
         let bond = times * (1.0 + restitution) * restitution * speed / (G * DT);

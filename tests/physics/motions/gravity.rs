@@ -1,6 +1,5 @@
 //! Gravity that turns by itself or is tilted by hand: falling and sliding, and that a tilted scene equals a scene
-//! whose gravity
-//! is written that way.
+//! whose gravity is written that way.
 
 use super::{saved_and_read, through_a_file};
 use crate::common::*;

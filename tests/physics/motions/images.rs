@@ -1,6 +1,5 @@
 //! Cells with borders that wrap, at the sides or all round, and that shear: pairs across borders are like other
-//! pairs, momentum
-//! is conserved, measures do not depend on the position of the borders, and files store the cell.
+//! pairs, momentum is conserved, measures do not depend on the position of the borders, and files store the cell.
 
 use super::periodic::{SIDE, SQUARE, falling, sliding};
 use super::sheared::{SIZE, cell, gas as sheared_gas, ways};
@@ -8,8 +7,7 @@ use super::{saved_and_read, through_a_file};
 use crate::common::*;
 
 /// Discs of nearly equal or very different sizes between a frictionless floor and ceiling, or in a cell that is
-/// periodic all
-/// round.
+/// periodic all round.
 pub(super) fn gas(small: f64, all_round: bool) -> Scene {
     let mut random = random(5);
     let (spacing, fall) = if all_round { (1.2, 0.3) } else { (1.1, 0.0) };

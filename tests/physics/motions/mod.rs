@@ -1,6 +1,5 @@
 //! Bodies that move by themselves, and gravity that turns: the effect of their surfaces on grains, independence of
-//! the frame of
-//! reference, and their part in energy, momentum, restart and mirror images.
+//! the frame of reference, and their part in energy, momentum, restart and mirror images.
 
 mod driven;
 mod gravity;

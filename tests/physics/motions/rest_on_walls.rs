@@ -1,6 +1,5 @@
 //! A disc at rest relative to a wall keeps its gap, however the wall moves: the wall has a rigid velocity that is
-//! exactly its
-//! mean over each step.
+//! exactly its mean over each step.
 
 use super::through_a_file;
 use crate::common::*;
@@ -30,8 +29,7 @@ fn a_disc_in_the_corner_of_a_drum_that_turns_stays_in_it() {
         let what = format!("{stepper}, {dt} s");
         let run = after(&through_a_file(&scene), (0.5 / dt) as usize);
         // Before the walls' mean velocity had an inward part, the square sank by 0.62 d per second at 1 ms. The first
-        // step begins with
-        // the instantaneous velocity, not with the mean over a step.
+        // step begins with the instantaneous velocity, not with the mean over a step.
         let (allowed, far) = if is_rigid(stepper) { (1e-4, 1e-3) } else { (0.05, 0.2) };
         let overlap = run.observables().max_overlap;
         assert!(overlap < allowed, "{what}: overlaps by {overlap} d");
@@ -95,8 +93,7 @@ fn valleys() -> Vec<Valley> {
 }
 
 /// Every kind of course, with its initial velocity and spin. After each half second, all are back at their initial
-/// place or
-/// move evenly.
+/// place or move evenly.
 fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     let (pivot, c) = (DVec2::new(0.02, -0.05), place_in_valley());
     let about = |rate: f64| (rate * (c - pivot).perp(), rate);

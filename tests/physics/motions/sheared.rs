@@ -39,8 +39,7 @@ pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
 #[test]
 fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
     // The discs meet across the border and have no velocity along it. They rub only because the border slides, until
-    // the friction
-    // impulse μP or m_t U is reached.
+    // the friction impulse μP or m_t U is reached.
     let discs = [DVec2::new(0.055, 0.0099), DVec2::new(0.055, SIZE.y - 0.0099)];
     let mut scene = without_g(
         parameters(0.0, 1e-4, 0.0, 0.2),

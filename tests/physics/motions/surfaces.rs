@@ -1,8 +1,6 @@
 //! A disc that is laid on a sliding surface. Coulomb friction accelerates it with μg until it moves with the surface.
-//! Let V be
-//! the speed of the surface. A disc without rotation then has v = V. A disc with rotation has v = μgt and rω = 2μgt
-//! while it
-//! slips, until v + rω = V; then it rolls with v = V/3.
+//! Let V be the speed of the surface. A disc without rotation then has v = V. A disc with rotation has v = μgt and rω
+//! = 2μgt while it slips, until v + rω = V; then it rolls with v = V/3.
 
 use super::through_a_file;
 use crate::common::*;
@@ -128,10 +126,8 @@ fn drum(radius: f64, sides: usize) -> Boundary {
 }
 
 /// A disc without rotation sticks to the wall and moves with the point that it touches, with ΩR/(R − r) about the
-/// axis, until
-/// tan φ = μ. From there on it slides and swings like a pendulum about that angle, because friction does not change
-/// with the
-/// slip.
+/// axis, until tan φ = μ. From there on it slides and swings like a pendulum about that angle, because friction does
+/// not change with the slip.
 #[test]
 fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     let (outer, radius, rate) = (1.0, 0.1, 0.2);

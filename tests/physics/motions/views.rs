@@ -71,8 +71,7 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
                 let off = difference_of_views(&scene);
                 // Forgetting the surface speed in one step would give 0.02 d. Under `range` a gap of 1e-4 d counts as
-                // a contact, so a grain
-                // can come to rest with this gap or without it.
+                // a contact, so a grain can come to rest with this gap or without it.
                 let rests = if stepper == Stepper::Range && shape == 3 { 1.1e-4 } else { 1e-5 };
                 if off > rests {
                     differences.push((shape, stepper, method, push_out, off));

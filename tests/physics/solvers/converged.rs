@@ -144,8 +144,7 @@ fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result
 }
 
 /// Runs every `nth` pair of scene and solver for `steps` steps. Returns the number of steps reported as solved, and
-/// the false
-/// reports.
+/// the false reports.
 fn look(scenes: Vec<Scene>, nth: usize, steps: usize) -> (usize, Vec<String>) {
     let (mut solved, mut wrong) = (0, Vec::new());
     for (scene, solver) in pairs(scenes, solvers()).into_iter().step_by(nth) {
@@ -170,8 +169,7 @@ fn no_step_is_called_solved_that_is_not() {
 }
 
 /// The steps of `range` consist of pieces with problems of their own, which world data of whole steps cannot judge.
-/// The reported
-/// residual is the largest of all pieces, by Coulomb's law or by the model that was solved.
+/// The reported residual is the largest of all pieces, by Coulomb's law or by the model that was solved.
 #[test]
 fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
     let is_by_residual = |solver: &SolverSettings| solver.stop == StopTest::Residual;

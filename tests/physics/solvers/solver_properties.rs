@@ -1,6 +1,5 @@
 //! Properties of every solved step of random piles: the solver's reports are checked against positions, velocities
-//! and impulses
-//! only.
+//! and impulses only.
 
 use std::cell::Cell;
 
@@ -191,10 +190,8 @@ fn physics_without_cohesion_is_bond_zero_bitwise() {
 #[test]
 fn overlap_grows_by_no_more_than_one_steps_travel() {
     // Let R = r_i + r_j, x the offset of the centres and n the normal before the step. Then ‖x + Δt v‖ ≥ n·(x + Δt
-    // v): a new contact
-    // overlaps by at most Δt times the closing speed along n. An old contact ends its step with v_n ≥ −ρ v_n^{n−1}
-    // except for the
-    // residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
+    // v): a new contact overlaps by at most Δt times the closing speed along n. An old contact ends its step with v_n
+    // ≥ −ρ v_n^{n−1} except for the residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
     let (old, new) = (Cell::new(0), Cell::new(0));
     for_random_piles(32, |scene| {
         let mut run = start(&scene);

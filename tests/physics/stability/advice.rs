@@ -1,6 +1,5 @@
 //! Alarms are true under every stepper, and their advice helps: a scene that raises an alarm no longer does after the
-//! change that
-//! the alarm recommends.
+//! change that the alarm recommends.
 
 use slump::scene::stability::{column, mass_ratio, overlapped, squeeze};
 

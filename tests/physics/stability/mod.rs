@@ -1,9 +1,8 @@
 //! Limits of the methods: the verdicts of a quick pass equal those of the committed table, and measured limits agree
-//! with
-//! theory.
+//! with theory.
 //!
-//! After a change that improves a verdict, or worsens it for a good reason, renew the table:
-//! `cargo run --release -- stability --quick --table tests/physics/stability/table.csv --overwrite`.
+//! After a change that improves a verdict, or worsens it for a good reason, renew the table: `cargo run --release --
+//! stability --quick --table tests/physics/stability/table.csv --overwrite`.
 
 mod advice;
 mod theory;
@@ -229,10 +228,8 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
 }
 
 /// Failures that no remedy mends. So far from the origin that places are 2·10⁻³ d apart, numbers lack digits. And
-/// contacts slide
-/// open: each step along a curved surface opens a gap by (Δt v_t)²/2d. Below the tolerance the gap is neither closed
-/// nor does it
-/// count, until all contacts exceed it at once.
+/// contacts slide open: each step along a curved surface opens a gap by (Δt v_t)²/2d. Below the tolerance the gap is
+/// neither closed nor does it count, until all contacts exceed it at once.
 const UNMENDED: [(&str, f64); 2] = [("far", 1e13), ("moving-walls", 2e-2)];
 
 #[test]

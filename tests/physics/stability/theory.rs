@@ -83,9 +83,8 @@ fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
 }
 
 /// At ρ = 1 the struck contact requires v₂ − v₁ = v, all others require no relative motion. If the balls behind it
-/// move with u,
-/// momentum gives u − v + (n − 1) u = v: they leave with 2v/n, and the first one bounces back. Momentum and energy are
-/// conserved, and yet no real cradle behaves so.
+/// move with u, momentum gives u − v + (n − 1) u = v: they leave with 2v/n, and the first one bounces back. Momentum
+/// and energy are conserved, and yet no real cradle behaves so.
 #[test]
 fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     for count in [2, 3, 5, 20] {

@@ -8,8 +8,7 @@ const BOND: f64 = 20.0;
 const TIME_STEPS: [f64; 7] = [5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
 /// A grain that leaves a fixed disc with a speed (m/s) under a load (m/s²) that pulls it away. C₀ is that of Bond
-/// [`BOND`] under
-/// g, for every load.
+/// [`BOND`] under g, for every load.
 fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulation {
     let direction = DVec2::X;
     let grain = moving(2.0 * RADIUS * direction, RADIUS, speed * direction);
@@ -186,9 +185,8 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
 }
 
 /// Fraction of ω_c = √(C₀/(m_ij L)), the spin at which the bond holds the circle, above which a pair that turns as
-/// one body tears
-/// the bond. The pull is C₀ up to δ_c, and L²ω is conserved: the pair opens to L(1 + δ) if
-/// ½ω²L²(1 − (1 + δ)⁻²) = (C₀/m_ij)Lδ.
+/// one body tears the bond. The pull is C₀ up to δ_c, and L²ω is conserved: the pair opens to L(1 + δ) if ½ω²L²(1 −
+/// (1 + δ)⁻²) = (C₀/m_ij)Lδ.
 fn tearing_part(delta: f64) -> f64 {
     (2.0 * delta / (1.0 - (1.0 + delta).powi(-2))).sqrt()
 }
@@ -339,8 +337,7 @@ fn the_paper_s_law_tells_nothing_of_bonds() {
 }
 
 /// Number of steps of a collapsing pile that both Newton's method and another method have solved, and the number of
-/// those whose
-/// final velocities agree.
+/// those whose final velocities agree.
 fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
     let parameters =
         Parameters { restitution: 0.1, restitution_threshold: 2.0, friction, ..range(20.0, 2e-4) };
@@ -373,10 +370,8 @@ fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
 const MOMENTS: u32 = 12;
 
 /// Methods need not agree on all steps. Coulomb's law may have several solutions, and the method decides which is
-/// found. If shocks
-/// have more contacts than they need, the distribution of their impulses decides which bond breaks first. Methods
-/// that solve
-/// another law agree on next to none.
+/// found. If shocks have more contacts than they need, the distribution of their impulses decides which bond breaks
+/// first. Methods that solve another law agree on next to none.
 #[test]
 fn methods_agree_on_nearly_all_steps_with_bonds() {
     for (method, (friction, least_share)) in

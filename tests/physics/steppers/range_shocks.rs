@@ -7,8 +7,7 @@ const BOND: f64 = 20.0;
 const TIME_STEPS: [f64; 6] = [1e-4, 3e-4, 1e-3, 2e-3, 5e-3, 2e-2];
 
 /// Two discs in free flight, the second at rest. They meet after `gap` metres along x, with their centres offset
-/// along y by
-/// `aside` sums of radii.
+/// along y by `aside` sums of radii.
 fn two(physics: Physics, numbers: Parameters, [gap, aside, speed, size]: [f64; 4]) -> Simulation {
     let radii = RADIUS * (1.0 + size);
     let ahead = (1.0 - aside * aside).sqrt() * radii;

@@ -210,8 +210,7 @@ fn the_contact_time_that_is_told_is_that_of_two_mean_grains() {
 }
 
 /// Two equal grains at rest in their bond that are thrown apart. Returns the energy of their relative motion that
-/// they lose until
-/// they are far apart (J), or `None` if they stay together.
+/// they lose until they are far apart (J), or `None` if they stay together.
 fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     scene.grains[1].velocity.x = speed;
     let mut run = start(&scene);

@@ -1,6 +1,5 @@
 //! The documentation: links lead to existing targets, numbers equal those of their reports, the program accepts all
-//! commands and
-//! runs the quick ones, generated parts are up to date, and pages are short.
+//! commands and runs the quick ones, generated parts are up to date, and pages are short.
 
 mod commands;
 mod links;

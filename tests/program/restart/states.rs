@@ -173,8 +173,7 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
 }
 
 /// A pile on a shaken base, beside a plate that turns back and forth, a wall that moves by a table, a belt, and a
-/// wall that is
-/// about to reach its end.
+/// wall that is about to reach its end.
 fn among_motions() -> Scene {
     let mut scene = pressed_pile(40, 0.3, 5, parameters(5.0, 1e-3, 0.3, 0.5));
     let at = DVec2::new;

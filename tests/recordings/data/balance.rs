@@ -62,9 +62,8 @@ impl FrameTables {
     }
 }
 
-/// Errors of a run's frames. Momentum is relative to the largest change between two frames, stress and border work to
-/// the
-/// largest border work.
+/// Errors of a run's frames: of momentum and spin relative to the largest impulse and torque of a step, of border
+/// work and stress relative to the largest border work.
 #[derive(Debug, Default)]
 struct Off {
     momentum: f64,
@@ -401,8 +400,7 @@ fn walls_tell_of_strain_force_and_work() {
     assert!(lid.2 > 0.0 && floor.2 == 0.0, "{lid:?}");
 
     // A drum's torque times its spin is its work, and nearly the work that steps report: a step also counts the
-    // inward part
-    // ½ω²Δt·R of the wall's mean velocity, which is of first order in Δt.
+    // inward part ½ω²Δt·R of the wall's mean velocity, which is of first order in Δt.
     let off = |time_step_secs: f64| {
         let mut drum = scene("drum");
         drum.parameters.time_step_secs = time_step_secs;
@@ -421,8 +419,8 @@ fn walls_tell_of_strain_force_and_work() {
 #[test]
 fn walls_have_the_work_and_torque_of_all_steps_between_two_frames() {
     // The works equal those of the steps, except for walls driven by a force (biaxial), which have two speeds in a
-    // step. For a turning
-    // wall the table uses the slip at the end of each step, and the step uses that at its beginning.
+    // step. For a turning wall the table uses the slip at the end of each step, and the step uses that at its
+    // beginning.
     for (name, bond, time_step_secs, off_by, off_torque) in [
         ("vibrated", 0.0, 1e-3, 1e-10, 0.0),
         ("biaxial", 0.0, 1e-3, 5e-3, 0.0),

@@ -162,8 +162,7 @@ fn parts_end_with_a_frame_and_do_not_hang_on_how_fast_the_disk_was() {
 }
 
 /// OVITO recognises a file only if its first frame begins early enough: after a head of 16 lines it does, after 17 it
-/// does not
-/// (OVITO 3.17.2).
+/// does not (OVITO 3.17.2).
 #[test]
 fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
     for entry in SCENES {

@@ -183,8 +183,7 @@ struct Reference {
 }
 
 /// Velocities are unique without friction, and in these problems also with friction: cold starts, warm starts and
-/// both solvers
-/// agree to 1e-9 of the fastest free velocity.
+/// both solvers agree to 1e-9 of the fastest free velocity.
 #[test]
 fn velocities_are_those_that_siconos_finds() {
     let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
