@@ -88,7 +88,7 @@ impl Seek for MemoryFile {
 static GIVEN: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
 static WRITTEN: Mutex<Vec<(PathBuf, Vec<u8>)>> = Mutex::new(Vec::new());
 
-/// Gives a file, which can be read from now on.
+/// Adds a file that can be read from now on.
 pub fn give_file(path: PathBuf, bytes: Vec<u8>) {
     GIVEN.lock().unwrap_or_else(PoisonError::into_inner).insert(path, bytes);
 }

@@ -25,7 +25,7 @@ use crate::world::{Grain, ParameterChanges};
 /// made ([`Config::scene`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Config {
-    /// Where the scene comes from.
+    /// The source of the scene.
     pub source: SceneSource,
     /// The stepper.
     pub stepper: Option<Stepper>,
