@@ -23,8 +23,9 @@
 //! * `slump-studies`: `study`
 //! * this crate: [`render`] ← the program, which consists of `headless`, the window (`app`, feature `window`) and `cli`
 //!
-//! The compiler ensures the order of the crates, and a test that of the modules. The physics does not depend on a screen.
-//! Without the feature `gpu` the processor draws all pictures. A separate package in `python/` is for Python.
+//! The compiler ensures the order of the crates, and a test ensures that imports between modules point one way. The
+//! physics does not depend on a screen. Without the feature `gpu` the processor draws all pictures. `python/` contains
+//! the Python package.
 
 #![cfg_attr(
     target_arch = "wasm32",
