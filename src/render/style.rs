@@ -56,7 +56,7 @@ pub enum Theme {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Style {
-    /// What the colours of the grains stand for.
+    /// Quantity that the colours of the grains show.
     pub colour_by: ColourBy,
     /// Values at the two ends of the colours, in the units of [`ColourBy`]; taken from the snapshot if absent. Frames
     /// of one animation should share one range.
@@ -77,7 +77,7 @@ pub struct Style {
     pub angles: bool,
     /// True if a scale bar is drawn.
     pub scale_bar: bool,
-    /// True if a legend is drawn where colours or links need one.
+    /// True if a legend is drawn for colours or links that need one.
     pub legend: bool,
     /// Ground and ink.
     pub theme: Theme,

@@ -21,7 +21,7 @@ pub use slump::world::*;
 /// g of the scenes made here, m/s².
 pub const G: f64 = 9.8;
 
-/// The x axis alone.
+/// Only the x axis.
 pub const LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 /// The plane without friction.
 pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, cohesion: true };

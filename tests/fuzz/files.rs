@@ -1,5 +1,4 @@
-//! Files that a stranger made with care: columnar ones whose structure lies, saved runs changed and sealed again, and
-//! links.
+//! Carefully crafted hostile files: columnar files with a false structure, changed and resealed saved runs, and links.
 
 use slump::config::SavedState;
 use slump::data::read_grains;
@@ -11,7 +10,7 @@ use super::parsers::{NUMBERS, changed, check, is_legible, one_of};
 use crate::columnar::Columnar;
 use crate::program::*;
 
-/// Whole numbers that headers have, and some that none has.
+/// Whole numbers that headers have, and some that are impossible.
 const COUNTS: [i64; 12] = [0, 1, 2, 3, 5, 8, 16, 1 << 20, 1 << 28, i32::MAX as i64, i64::MAX, -1];
 
 #[test]
@@ -42,7 +41,7 @@ fn columnar_files_by_structure() {
                 let place = u.choose_index(bytes.len())?;
                 bytes[place] ^= 1 << u.int_in_range(0..=7)?;
             }
-            // A text to whoever hands it on.
+            // Each byte as a character, because an input is a text.
             Ok(bytes.into_iter().map(char::from).collect())
         },
         |text, path| {
@@ -52,7 +51,7 @@ fn columnar_files_by_structure() {
     );
 }
 
-/// A file of a saved run with that content.
+/// A file of a saved run with this content.
 fn sealed(whole: &[u8], content: &[u8]) -> Vec<u8> {
     let end = whole.iter().position(|&byte| byte == b'\n').expect("a first line");
     let line = std::str::from_utf8(&whole[..end]).expect("UTF-8");
@@ -113,7 +112,7 @@ fn links() {
             Ok(link.replace('\0', "0"))
         },
         |link, _| {
-            // Without a screen nothing opens, but the link is read before.
+            // Without a screen no window opens, but the link is read first.
             let mut command = assert_cmd::Command::from_std(slump("--open"));
             command.arg(link).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
             let output = command.timeout(PATIENCE).output().expect("it starts");

@@ -1,11 +1,10 @@
-//! Hostile input, at random: every parser with texts that are nearly right, scenes that nobody would write
-//! with every stepper, method and remedy, and whole command lines. Nothing may panic, hang or pass in
-//! silence.
+//! Random hostile input: nearly correct texts for every parser, absurd scenes with every stepper, method and remedy,
+//! and whole command lines. Nothing may panic, hang or fail silently.
 //!
-//! The same inputs are tried each time: as many as a target says, `SLUMP_FUZZ_TIMES` times as many, or as many as there is
-//! time for where `SLUMP_FUZZ_SECS` gives a target so many seconds. `SLUMP_FUZZ_SEED` is a number that asks for others,
-//! `ARBTEST_SEED` for the one whose seed a failure tells. What fails stays in a file that the failure names. It goes to the
-//! target's folder in `corpus/`, whose files are tried first, and stays there.
+//! Each run tries the same inputs. Their number is that of the target, or `SLUMP_FUZZ_TIMES` times as many, or as
+//! many as fit into `SLUMP_FUZZ_SECS` seconds per target. Another `SLUMP_FUZZ_SEED` gives other inputs;
+//! `ARBTEST_SEED` gives the input whose seed a failure names. A failing input stays in a file that the failure names.
+//! Move it to the target's folder in `corpus/`, whose files are tried first, and leave it there.
 
 #[path = "../common/columnar.rs"]
 mod columnar;
@@ -23,20 +22,20 @@ use arbitrary::Unstructured;
 use program::*;
 use trial::Trial;
 
-/// Bytes that an input is drawn from: more than any needs.
+/// Bytes from which an input is made: more than any needs.
 const DRAWN_FROM: u64 = 1 << 16;
 
 #[derive(Clone, Copy)]
 struct Target {
     name: &'static str,
     ending: &'static str,
-    /// Inputs in the ordinary suite: about a second of them.
+    /// Inputs in the ordinary suite, for about a second.
     inputs: u64,
 }
 
 impl Target {
-    /// Tries what is in `kept`, then what `draw` makes of random bytes, as often as asked for, and says how many inputs
-    /// there were. `check` gets each as a text and as a file; whether it was taken.
+    /// Tries the `kept` inputs and then those that `draw` makes of random bytes, as often as requested, and prints
+    /// their number. `check` gets each input as a text and as a file, and returns true if it was accepted.
     fn fuzz(
         self,
         kept: &[String],
@@ -68,7 +67,7 @@ impl Target {
         println!("{}: {inputs} inputs, {} of them kept, {taken} taken", self.name, kept.len());
     }
 
-    /// Everything that ever failed, and what is known to be hostile.
+    /// All inputs that ever failed, and known hostile ones.
     fn corpus(self) -> Vec<String> {
         let ours = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus");
         let folder = ours.join(self.name);
@@ -81,7 +80,7 @@ fn asked_for(variable: &str) -> Option<u64> {
     std::env::var(variable).ok().map(number)
 }
 
-/// The seed of an input of a run: what is random, and in its lower half the number of bytes.
+/// The seed of an input of a run: random bits in the upper half, and the number of bytes in the lower half.
 fn seed(run: u64, number: u64) -> u64 {
     let hash = blake3::hash(&[run.to_le_bytes(), number.to_le_bytes()].concat());
     let random = hash.as_bytes().iter().take(4).fold(0, |seed, &byte| seed << 8 | u64::from(byte));

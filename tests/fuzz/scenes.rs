@@ -1,4 +1,4 @@
-//! Scenes that nobody would write, with every stepper, method and remedy, for fifty steps.
+//! Absurd scenes with every stepper, method and remedy, for fifty steps.
 
 use arbitrary::{Result, Unstructured};
 use glam::DVec2;
@@ -120,7 +120,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     scene.mean_diameter = 2.0 * scene.grains[0].radius;
     scene.gap_tolerance = *u.choose(&[0.0, 0.0, 1e-9, 1e-3])? * scene.mean_diameter;
     scene.view = None;
-    // As long as fifty steps are, so that a run from its file takes no more.
+    // Fifty steps long, so that a run from its file is not longer.
     scene.duration_secs = 50.0 * scene.parameters.time_step_secs;
     let discs = u.int_in_range(0..=3)?;
     let disc = |u: &mut Unstructured<'_>| {
@@ -151,7 +151,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The first boundary, under a force.
+/// A motion of the first boundary by a force.
 fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     let drive = Drive {
         direction: point(u, size)?,
@@ -165,7 +165,7 @@ fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     Ok(Motion { boundaries: vec![0], drive: Some(drive), ..Motion::default() })
 }
 
-/// All fixed bodies that can move, on any course.
+/// A motion of all fixed bodies that can move, on any course.
 fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> {
     let is_free = |index: &usize| !matches!(scene.boundaries[*index], Boundary::Piston { .. });
     let (pivot, travel) = (point(u, size)?, *u.choose(&[None, None, Some(0.0), Some(0.3)])?);
@@ -194,7 +194,7 @@ fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> 
     })
 }
 
-/// One line alone, all on the x axis.
+/// The scene on the x axis only.
 fn on_line(mut scene: Scene) -> Scene {
     scene.physics = Physics { axes: 1, friction: false, rotation: false, ..scene.physics };
     for grain in &mut scene.grains {
@@ -213,7 +213,7 @@ fn on_line(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Around all that such a scene may have.
+/// A box around the whole scene.
 fn closed_box(size: f64) -> Boundary {
     let half = 1.5 * size;
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
@@ -251,9 +251,9 @@ fn random_scenes_with_everything() {
 }
 
 const STEPS: u32 = 50;
-/// Of its radius, what a grain may be beyond a wall before anyone looks.
+/// Depth beyond a wall at which a grain may still be undetected, in its radii.
 const UNSEEN_IN_RADII: f64 = 0.3;
-/// Sides of the box of all that is there at the start: surely out of the world.
+/// Distance that is certainly outside the world, in sides of the box around the initial scene.
 const FAR_IN_SIDES: f64 = 4.0;
 
 pub fn run(scene: &Scene, mut simulation: Simulation) {
@@ -290,8 +290,8 @@ fn has(simulation: &Simulation, kind: AlarmKind) -> bool {
     simulation.alarms().iter().any(|alarm| alarm.kind == kind)
 }
 
-/// What is told to be finite is: all that moves, and all that is measured, unless there is an alarm, but the
-/// residual of a step that was not solved.
+/// Checks that all motions and measures are finite, unless there is an alarm. The residual of an unsolved step may be
+/// anything.
 fn finite(simulation: &Simulation, stepper: Stepper, step: &Observables) {
     let grains = &simulation.world().grains;
     assert!(grains.positions.iter().chain(&grains.velocities).all(|v| v.is_finite()));
@@ -314,7 +314,7 @@ fn finite(simulation: &Simulation, stepper: Stepper, step: &Observables) {
     assert!(all.into_iter().all(f64::is_finite) || !simulation.alarms().is_empty(), "{step:?}");
 }
 
-/// A step that is said to be solved has a residual, of what was solved, that says so.
+/// Checks that a step reported as solved has a residual within its tolerance, against the model that was solved.
 fn solved(scene: &Scene, step: &Observables) {
     assert!(!(step.converged && step.stalled), "{step:?}");
     let to_residual = scene.solver.stop == StopTest::Residual && scene.stepper.uses_method();
@@ -325,7 +325,7 @@ fn solved(scene: &Scene, step: &Observables) {
     }
 }
 
-/// True if a grain is where none can come to, as far as what is fixed stays.
+/// True if a grain is at a place that none can reach, provided that fixed bodies do not move.
 fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
     if !scene.motions.is_empty() {
         return false;
@@ -345,7 +345,7 @@ fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
     scene.boundaries.iter().any(beyond) || is_far(scene, to)
 }
 
-/// True if a place is far from all that was there at the start, where there is an end to that.
+/// True if a place is far from the initial scene, if the scene is bounded.
 fn is_far(scene: &Scene, place: DVec2) -> bool {
     let mut fixed: Vec<DVec2> = scene.fixed_discs.iter().map(|disc| disc.position).collect();
     for boundary in &scene.boundaries {
@@ -363,7 +363,7 @@ fn is_far(scene: &Scene, place: DVec2) -> bool {
     fixed.extend(scene.grains.iter().map(|grain| grain.position));
     let min = fixed.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let max = fixed.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-    // A cell whose borders wrap belongs to the box: a wide one has a world as wide, and as high.
+    // A cell with borders that wrap is part of the box: a wide cell makes the world wide, and equally high.
     let Periodic { x, y, .. } = scene.periodic.unwrap_or_default();
     let [left, right] = x.unwrap_or([min.x, max.x]);
     let [below, above] = y.unwrap_or([min.y, max.y]);
@@ -373,7 +373,7 @@ fn is_far(scene: &Scene, place: DVec2) -> bool {
     !((min - room).cmple(place).all() && (max + room).cmpge(place).all())
 }
 
-/// True if a place is within a closed line: a ray from it cuts the line an odd number of times.
+/// True if a place is within a closed line: a ray from it crosses the line an odd number of times.
 fn is_within(line: &[DVec2], place: DVec2) -> bool {
     let cuts = line.windows(2).filter(|ends| {
         let [a, b] = [ends[0] - place, ends[1] - place];

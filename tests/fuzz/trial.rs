@@ -1,4 +1,4 @@
-//! One input after the other, each in a file while it is tried.
+//! Trials of inputs, one after the other, each in a file while it is tried.
 
 use std::io::Write;
 use std::sync::{Arc, Mutex};
@@ -6,11 +6,11 @@ use std::sync::{Arc, Mutex};
 use super::Target;
 use crate::program::*;
 
-/// More than an input takes on a busy machine: it would be a hang to whoever waits for it. Fifty long steps of
-/// small grains with as many substeps as are stable take ten seconds of an idle one.
+/// Time after which an input counts as a hang, longer than any takes on a busy machine. Fifty long steps of small
+/// grains with as many substeps as are stable take ten seconds of an idle machine.
 const SLOWEST: Duration = Duration::from_secs(200);
 
-/// Tries inputs. The one that fails stays in its file, whether it panics, hangs or takes the process along.
+/// Tries inputs. A failing input stays in its file, whether it panics, hangs or ends the process.
 pub struct Trial {
     path: PathBuf,
     begun: Arc<Mutex<Option<Instant>>>,
@@ -28,7 +28,7 @@ impl Trial {
         Self { path, begun, inputs: 0, taken: 0 }
     }
 
-    /// Tries one.
+    /// Tries an input.
     pub fn of(&mut self, text: &str, check: &mut impl FnMut(&str, &Path) -> bool) {
         write(&self.path, text);
         *self.begun.lock().expect("a time") = Some(Instant::now());
@@ -50,15 +50,15 @@ impl Drop for Trial {
     }
 }
 
-/// Ends the process where an input hangs: no test can.
+/// Ends the process if an input hangs, because no test can.
 fn watch(path: PathBuf, begun: Arc<Mutex<Option<Instant>>>) {
     std::thread::spawn(move || {
-        // The trial has the other one.
+        // The trial has the other reference.
         while Arc::strong_count(&begun) > 1 {
             std::thread::sleep(Duration::from_millis(200));
             let hangs = |begun: Instant| begun.elapsed() > SLOWEST;
             if begun.lock().expect("a time").is_some_and(hangs) {
-                // Printed lines are held back where tests run, and the process ends here.
+                // Tests hold printed lines back, and the process ends here.
                 let said = format!("no end after {SLOWEST:?}; the input is {}\n", path.display());
                 let _ = std::io::stderr().write_all(said.as_bytes());
                 std::process::exit(1);

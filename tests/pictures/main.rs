@@ -1,4 +1,4 @@
-//! Pictures of stored states and of studies, against those that are kept.
+//! Pictures of stored states and of studies, against stored pictures.
 
 #[path = "../common/program.rs"]
 mod program;

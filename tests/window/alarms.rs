@@ -1,4 +1,4 @@
-//! What the window says of a run that goes wrong, and the button that mends what can be mended.
+//! Alarms in the window, and the button that applies their advice.
 
 use crate::robot::*;
 
@@ -120,7 +120,7 @@ fn a_stalled_step_of_the_stepper_range_is_told_of() {
     config.solver = SolverChanges {
         method: Some(Method::Nncg),
         stop: Some(StopTest::Residual),
-        // Below the rounding of any step of a pile.
+        // Below the rounding error of any step of a pile.
         tolerance: Some(1e-18),
         max_sweeps: Some(100_000),
         ..SolverChanges::default()

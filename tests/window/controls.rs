@@ -168,7 +168,7 @@ fn a_new_pile_can_be_given_up() {
 
 #[test]
 fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
-    // No sweep can hold a grain that a step carries to infinity.
+    // No number of sweeps holds a grain that a step moves to infinity.
     let mut robot = Robot::open(pile());
     robot.key(egui::Key::ArrowRight);
     robot.set(|settings| settings.parameters.time_step_secs = 1e200);
@@ -206,7 +206,7 @@ fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
     }
     assert_eq!(robot.bits(), end);
     assert!(robot.state().run.command_line().expect("a command line").contains("--tilt 25"));
-    // Where gravity pulls to a point, there is nothing to tilt.
+    // If gravity points to a centre, it cannot be tilted.
     let cradle = Robot::open(Config::of_scene("cradle"));
     assert!(cradle.harness.query_by_label("Tilt slider").is_none());
 }
@@ -276,7 +276,7 @@ fn a_large_pile_is_solved_as_on_the_command_line_and_says_what_is_left() {
         assert_eq!(robot.settings().solver, slump::solver::SolverSettings::DEFAULT);
         robot.take_steps(3);
         let last = robot.observables();
-        // What stands is solved; what falls is left with an error that is told.
+        // Standing piles are solved; falling ones keep an error, which is reported.
         assert_eq!(last.converged, bond > 0.0, "{last:?}");
         let falling_speed = (9.81 * robot.world().snapshot.surroundings.mean_diameter).sqrt();
         assert!(last.velocity_error < 0.03 * falling_speed, "{last:?}");

@@ -1,10 +1,10 @@
-//! The front: what one sees first, the one gesture, and the word on whether to trust it.
+//! The first view: the visible controls, the central gesture, and the statement on trust.
 
 use crate::robot::*;
 use egui::Role;
 use slump::app::lessons::LESSONS;
 
-/// A window as it opens, with sliders that start the run again.
+/// A window as it opens, with sliders that restart the run.
 fn open(config: Config) -> Robot {
     let mut robot = Robot::open(config);
     robot.state_mut().preferences.starts_again = true;
@@ -62,7 +62,7 @@ fn a_number_that_is_typed_starts_the_pile_again_as_well() {
     assert!(robot.state().run.frame.playing && robot.state().run.frame.past.len() == 1);
 }
 
-/// Walls that a force drives, grains that stay where they are, one axis: each scene has a start to go back to.
+/// Walls driven by a force, grains that do not move, one axis: each scene has a start to return to.
 #[test]
 fn every_scene_starts_again_with_the_new_value() {
     let mut robot = open(pile());
@@ -108,7 +108,7 @@ fn switched_off_the_run_goes_on_and_the_hint_says_what_is_true_then() {
     assert!(robot.shows("Bonds that hold stay as they are"));
 }
 
-/// All that can be clicked, dragged or typed into, a slider and its number as one.
+/// All controls that can be clicked, dragged or typed into. A slider and its number count as one.
 fn controls(robot: &Robot) -> Vec<(Role, String)> {
     let is_control = |role: Role| {
         matches!(
@@ -214,7 +214,7 @@ fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
     };
     let before = told(&robot);
     assert!(before.contains("kinetic_energy"), "{before}");
-    // Other settings have a budget of their own, which may come at once.
+    // Other settings have an error budget of their own, which may arrive at once.
     let mut settings = robot.settings();
     settings.parameters.time_step_secs *= 0.5;
     robot.change(0, settings);
@@ -243,7 +243,7 @@ fn numbers_beyond_all_reason_are_refused() {
     assert!(robot.shows("ρ is 2, but must be between 0 and 1"));
 }
 
-/// As a file may have them, or a window that was closed with them.
+/// Such numbers may come from a file, or from a window that was closed with them.
 #[test]
 fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
     let places = |config: Config| {

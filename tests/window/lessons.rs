@@ -1,15 +1,15 @@
-//! What the lessons say comes out when they are run: of the pile that is shown, and of sixteen others.
+//! The statements of the lessons are true in runs of the pile shown and of sixteen others.
 
 use crate::robot::*;
 use slump::app::lessons::{LESSONS, Lesson};
 
-/// The lesson of that title.
+/// The lesson with this title.
 fn lesson(title: &str) -> (usize, &'static Lesson) {
     let found = LESSONS.iter().enumerate().find(|(_, lesson)| lesson.title == title);
     found.expect("a lesson")
 }
 
-/// The worlds of a lesson at their end, from other grains where there are any, without a window.
+/// Final states of a lesson's worlds without a window, from other grains if some are given.
 fn run_lesson(lesson: &Lesson, grains: Option<&[slump::world::Grain]>) -> Vec<Simulation> {
     let (config, mut scene) = lesson.scene().expect("a scene");
     if let Some(grains) = grains {
@@ -31,16 +31,16 @@ fn slumps(lesson: &Lesson, grains: Option<&[slump::world::Grain]>) -> Vec<f64> {
     runs.iter().map(|run| run.observables().slump).collect()
 }
 
-/// What a lesson says of two of its worlds.
+/// A lesson's statement about two of its worlds.
 struct Claim {
     lesson: &'static str,
-    /// That the first slumps more than the second.
+    /// Indices of the worlds: the first slumps more than the second.
     worlds: [usize; 2],
-    /// By how much between these, in the mean over piles (95 %).
+    /// Bounds on the mean difference over piles (95 %).
     between: [f64; 2],
 }
 
-/// Each difference below was measured over sixteen piles of seeds 1 to 18 but 8 and 15: from the top 0.170 ± 0.037,
+/// Each difference was measured over sixteen piles, of seeds 1 to 18 without 8 and 15: from the top 0.170 ± 0.037,
 /// 0.212 ± 0.034, 0.061 ± 0.038, 0.170 ± 0.037, 0.007 ± 0.028 and 0.311 ± 0.028.
 const CLAIMS: [Claim; 6] = [
     Claim { lesson: "The time step glues", worlds: [0, 1], between: [0.1, 0.3] },
@@ -67,7 +67,7 @@ fn the_pile_that_is_shown_does_what_the_lesson_says() {
     }
 }
 
-// Some five minutes on two cores.
+// About five minutes on two cores.
 #[test]
 #[ignore = "sixteen piles under every lesson: cargo test --release --test window lessons -- --ignored"]
 fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_the_odd_ones() {
@@ -93,7 +93,7 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
             let mean = differences.iter().sum::<f64>() / count;
             let variance =
                 differences.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / (count - 1.0);
-            // Tables: t(0.975; 15) = 2.131.
+            // From tables: t(0.975; 15) = 2.131.
             let half = 2.131 * (variance / count).sqrt();
             println!("{title}: worlds {more} and {less} differ by {mean:.3} ± {half:.3}");
             let [low, high] = claim.between;
@@ -118,7 +118,7 @@ fn a_smaller_time_step_moves_nothing_of_a_pile_that_stands() {
     run.take_steps(3_000).expect("finite states");
     let moved = run.observables().slump - stood;
     assert!(moved.abs() < 1e-3, "a slump of {stood} changes by {moved}");
-    // From the start the same time step makes another pile.
+    // Used from the start, the same time step makes another pile.
     let [small, large] = slumps(&LESSONS[0], None)[..] else { panic!("two worlds") };
     assert!(large == stood && small > stood + 0.1, "{small}, {large}, {stood}");
 }
@@ -199,7 +199,7 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     robot.click("1. The time step glues");
     robot.frames(2);
     assert!(robot.shows("One pile twice") && !robot.shows("A number was changed"));
-    // What a lesson asks to be changed leaves its sentences true.
+    // The change that a lesson asks for leaves its statements true.
     robot.state_mut().visit(1);
     robot.settle();
     robot.type_number("Δt, time step", "1e-4");
@@ -208,7 +208,7 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     robot.type_number("Bond", "0");
     robot.frames(2);
     assert!(robot.shows("A number was changed") && !robot.shows("This pile is stepped by 5 ms"));
-    // The last one is about whatever one likes.
+    // The last lesson allows any change.
     robot.state_mut().visit(LESSONS.len() - 1);
     robot.settle();
     robot.type_number("Bond", "0");
@@ -218,19 +218,19 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     assert!(robot.shows(LESSONS[LESSONS.len() - 1].watch));
 }
 
-/// What the lesson asks for next.
+/// The controls that the lesson asks for next.
 fn asked(robot: &Robot) -> &'static [&'static str] {
     let state = robot.state();
     (LESSONS[state.preferences.lesson.at].asks_for)(&state.run, &state.preferences)
 }
 
-/// True where a control is in the window as a whole.
+/// True if the window shows the whole control.
 fn is_in_view(robot: &Robot, name: &str) -> bool {
     let window = egui::Rect::from_min_size(egui::Pos2::ZERO, SMALL);
     robot.state().controls.get(name).is_some_and(|rect| window.contains_rect(*rect))
 }
 
-/// The smallest window that is promised to hold them.
+/// The smallest window that must show them.
 const SMALL: egui::Vec2 = egui::vec2(1024.0, 700.0);
 
 #[test]

@@ -1,4 +1,4 @@
-//! What can be looked at, compared and asked besides the pile itself, and that controls stay where they are.
+//! Views, comparisons and questions other than the pile itself, and controls that stay in place.
 
 use egui_kittest::kittest::Queryable;
 
@@ -21,7 +21,7 @@ fn histograms_count_the_moment_that_is_shown() {
     let mut robot = Robot::open(pile());
     robot.key(egui::Key::ArrowRight);
     robot.clicks(&["Compare", "Distributions", "contacts"]);
-    // Each of the grains has its place.
+    // Each grain is counted.
     let counted = "contacts of a grain: 138 in all";
     let start = std::time::Instant::now();
     while !robot.shows(counted) {
@@ -171,7 +171,7 @@ fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
     assert_eq!(pinned, Some(GrainRef { world: 0, grain: grain as usize }));
 }
 
-/// True if the panel says the residual of the last step.
+/// True if the panel states the residual of the last step.
 fn tells(robot: &Robot, residual: f64) -> bool {
     robot.shows(&format!("{residual:.1e}"))
 }
@@ -287,7 +287,7 @@ fn what_hardly_moves_rests_and_is_told_in_units_that_one_knows() {
     assert!(robot.shows("0.000 m/s, 0.000 m/s"), "grain {grain}");
 }
 
-/// Opens one page after the other, and asserts that no text has a word that is none.
+/// Opens all pages in turn and asserts that no text contains an internal word.
 fn words_are_as_one_reads_them(robot: &mut Robot) {
     for page in Page::ALL {
         robot.state_mut().preferences.page = Some(page);
@@ -308,7 +308,7 @@ fn words_are_as_one_reads_them(robot: &mut Robot) {
 
 #[test]
 fn symbols_and_ordinals_are_written_as_one_reads_them() {
-    // More rows than a curve has.
+    // More rows than a curve can have.
     let mut config = Config::of_scene("cradle");
     config.source.duration = Some(1e6);
     let mut robot = Robot::open(config);

@@ -1,8 +1,9 @@
 //! The window's real panels with a real solver thread, driven through their accessibility tree.
 //!
-//! Pictures of panels are kept in `tests/pictures/golden/window-*.png`; they may differ by 2/255 in any channel
-//! and in 1 % of the pixels at all. After a change that is meant, look at the pictures that a failure
-//! leaves in `target/golden/` and renew the files with
+//! Pictures of panels are stored in `tests/pictures/golden/window-*.png`; they may differ by 2/255 in any channel and
+//! in 1 % of the
+//! pixels at all. After an intended change, look at the pictures that a failure writes to `target/golden/` and renew
+//! the files with
 //!
 //! ```text
 //! SLUMP_BLESS=1 cargo test --release --test window -- --ignored with_driver

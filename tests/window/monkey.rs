@@ -1,5 +1,5 @@
-//! Somebody without a plan: clicks, drags, types and presses keys at random, wherever there is a control. The window must
-//! neither panic nor hang, and memory must not grow without end.
+//! Random clicks, drags, texts and keys, at all controls. The window must neither panic nor hang, and memory must not
+//! grow without limit.
 
 use egui::{Key, Role};
 use rand::seq::IndexedRandom;
@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::robot::*;
 
-/// What is typed into fields.
+/// Texts typed into fields.
 const TEXTS: [&str; 9] =
     ["0", "-3", "nonsense", "", "0.5", "1e-4", "N > 0 and y < 2", "force > 1e-3", "1e9"];
 const KEYS: [Key; 12] = [
@@ -39,7 +39,7 @@ fn is_control(role: Role) -> bool {
     )
 }
 
-/// Does one thing, and gives the name of the control that it was done to.
+/// Performs one random action. Returns the name of its control.
 fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
     if random.random_ratio(1, 6) {
         let key = *KEYS.choose(random).expect("some keys");
@@ -93,7 +93,7 @@ fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
     format!("{role:?} {name}")
 }
 
-/// Acts for a while, and gives what was done and the largest memory, MiB.
+/// Acts for a while. Returns the actions and the largest memory, MiB.
 fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
     let files = folder();
     let mut robot = Robot::open(Config::default());
@@ -106,7 +106,7 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
     let mut answered = Instant::now();
     while begun.elapsed() < duration {
         let done = act(&mut robot, &mut random);
-        // What was typed as a folder is none of the test's.
+        // The random text in the folder's field must not be used.
         robot.state_mut().preferences.folder = files.path().to_owned();
         robot.frames(2);
         std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
@@ -117,7 +117,7 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
         }
         assert!(answered.elapsed() < PATIENCE, "the solver's thread is silent after {acts:?}");
     }
-    // The solver's thread still does what it is asked to.
+    // The solver's thread still carries out commands.
     robot.send(Command::CancelLoading);
     robot.load(Config::of_scene("cradle"));
     robot.take_steps(3);
@@ -125,7 +125,7 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
     (acts, most)
 }
 
-/// What the process has of the machine's memory; 0 where the system does not tell.
+/// Resident memory of the process, MiB; 0 if the system does not report it.
 fn resident_mib() -> usize {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
@@ -139,7 +139,7 @@ fn somebody_without_a_plan_breaks_nothing() {
     assert!(acts.len() > 40, "{} acts", acts.len());
 }
 
-/// Runs one pile to its end, again and again, and tells what memory that takes after a few times and after many.
+/// Runs one pile to its end repeatedly. Prints the memory after a few runs and after many.
 #[test]
 #[ignore = "part of the_twentieth_run_needs_no_more_memory_than_the_sixth, which starts it in a process of its own"]
 fn twenty_runs() {

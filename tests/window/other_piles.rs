@@ -1,12 +1,12 @@
-//! New piles while they are made, and the mean over other piles: whose it is, and when there is one.
+//! New piles while they are made, and the mean over other piles: which world it belongs to, and when it exists.
 
 use crate::robot::*;
 
-/// They give way to whatever else the machine does.
+/// Time limit for other piles, whose threads have low priority.
 const PATIENCE: Duration = Duration::from_secs(600);
-/// The switch.
+/// Label of the switch.
 const OTHERS: &str = "Other piles, on idle cores";
-/// Piles that settle in no time.
+/// Number of grains of a pile that settles at once.
 const GRAINS: usize = 12;
 const WIDTH: f64 = 5.0;
 
@@ -27,7 +27,7 @@ fn open(cache: &Path) -> Robot {
     robot
 }
 
-/// Waits until all other piles of a world have come to their end, and tells their mean at a time.
+/// Waits until all other piles of a world have ended. Returns their mean at a time.
 fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
     let begun = Instant::now();
     loop {
@@ -36,13 +36,13 @@ fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
             return told;
         }
         assert!(begun.elapsed() < PATIENCE, "waited in vain for eight piles: {told:?}");
-        // Someone is looking: what stands still for long is not computed for.
+        // A command shows that someone is looking; if nothing happens for long, nothing is computed.
         robot.send(Command::SetPull(0, None));
         std::thread::sleep(Duration::from_millis(50));
     }
 }
 
-/// Mean and half the interval of the slump at the end of runs from the same seeds, without a window.
+/// Mean and half width of the interval of the final slump of runs with the same seeds, without a window.
 fn headless(settings: &Settings) -> (f64, f64) {
     let slump = |seed: u64| {
         let pile =
@@ -57,7 +57,7 @@ fn headless(settings: &Settings) -> (f64, f64) {
     let slumps = [1, 3, 4, 5, 6, 7, 9, 10].map(slump);
     let mean = slumps.iter().sum::<f64>() / 8.0;
     let variance = slumps.iter().map(|slump| (slump - mean).powi(2)).sum::<f64>() / 7.0;
-    // Tables: t(0.975; 7) = 2.364624.
+    // From tables: t(0.975; 7) = 2.364624.
     (mean, 2.364_624 * (variance / 8.0).sqrt())
 }
 
@@ -77,7 +77,7 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_near(at_end, expected);
     let kept: Vec<_> = std::fs::read_dir(cache.path()).expect("a folder").collect();
     assert_eq!(kept.len(), 8, "initial states are kept");
-    // The run itself changes nothing of it, and the number stands beside its own.
+    // The run does not affect the mean, which is shown beside the run's own number.
     robot.state_mut().run.live.send(Command::SetPace(slump::live::Pace::Max));
     robot.state_mut().run.live.send(Command::Play);
     robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.09);
@@ -85,7 +85,7 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_near(mean(&mut robot, 0, 0.1), expected);
     robot.harness.step();
     assert!(robot.shows("(n = 8)"));
-    // Other settings begin anew, from the kept states.
+    // With other settings the piles start again, from the stored states.
     let mut other = settings;
     other.parameters.bond = 0.0;
     robot.change(0, other);
@@ -128,7 +128,7 @@ fn switched_off_there_is_no_thread() {
     robot.clicks(&["Compare", OTHERS]);
     assert_eq!(robot.state().ensemble.threads(), 0);
     assert_eq!(robot.state().ensemble.mean_at(0, 0.0), None);
-    // A scene that is no pile has none either.
+    // A scene that is not a pile has no switch either.
     robot.click(OTHERS);
     robot.until("a thread", |state| state.ensemble.threads() > 0);
     robot.load(Config::of_scene("cradle"));
@@ -137,7 +137,7 @@ fn switched_off_there_is_no_thread() {
     assert!(robot.harness.query_by_label(OTHERS).is_none());
 }
 
-/// So many grains that they fall for a while.
+/// A pile of so many grains that they fall for a while.
 fn rain() -> Config {
     let mut config = pile();
     config.source.grains = Some(400);
@@ -164,7 +164,7 @@ fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
     assert!(robot.state().controls.contains_key("pile in the making"), "it is drawn");
     let shown = robot.harness.query_all_by_label_contains("Raining a new pile of 400").count();
     assert!(shown >= 1, "and told");
-    // Nothing can be played, and nothing that is asked for waits.
+    // Nothing can be played, and no request waits.
     for key in [egui::Key::Space, egui::Key::ArrowRight, egui::Key::R] {
         robot.harness.key_press(key);
         robot.harness.step();

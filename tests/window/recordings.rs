@@ -1,4 +1,4 @@
-//! Recordings that the window exports, and those that the program writes without one.
+//! Recordings exported by the window, against those that the program writes without a window.
 
 use crate::robot::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,7 +9,7 @@ use crate::tables::parquet;
 
 pub const TABLES: [&str; 5] = ["grains", "contacts", "steps", "measures", "histograms"];
 
-/// A window with the panel open, that exports each step into a folder.
+/// A window with the panel open that exports each step into a folder.
 pub fn open(config: Config, folder: &Path, formats: &[FormatName]) -> Robot {
     let mut robot = Robot::open(config);
     let data = DataChoices { folder: folder.to_owned(), each_step: true, ..DataChoices::default() };
@@ -23,13 +23,13 @@ pub fn export(robot: &mut Robot) -> String {
     robot.written()
 }
 
-/// Runs the program without a window and gives what it says on stderr.
+/// Runs the program without a window. Returns its stderr.
 pub fn headless(arguments: &[&str], folder: &Path) -> String {
     let mut command = slump("--headless");
     said(&run(command.args(arguments).arg("--data").arg(folder)))
 }
 
-/// All files of a recording, by their paths in it.
+/// All files of a recording, by their relative paths.
 pub fn files(folder: &Path) -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
     let mut folders = vec![folder.to_owned()];
@@ -46,7 +46,7 @@ pub fn files(folder: &Path) -> BTreeSet<PathBuf> {
     found
 }
 
-/// A text file without what says how it came about: facts by lines, or many of them in a line.
+/// Lines of a text file without the facts about its origin.
 pub fn said_in(path: &Path) -> Vec<String> {
     let text = read(path);
     let is_origin = |said: &str| {
@@ -57,13 +57,13 @@ pub fn said_in(path: &Path) -> Vec<String> {
     said.filter(|said| !is_origin(said)).map(str::to_owned).collect()
 }
 
-/// What is told of a recording, and what of that is of the scene.
+/// The facts in a recording's manifest, including those of the scene.
 pub fn facts(folder: &Path) -> BTreeMap<String, String> {
     let manifest = json(folder.join("data.json"));
     serde_json::from_value(manifest["about"].clone()).expect("words by words")
 }
 
-/// The arrays of a `.vtp` file by their names, but for the one that says how it came about.
+/// The arrays of a `.vtp` file by name, without the facts about its origin.
 fn arrays(path: &Path) -> BTreeMap<String, Vec<u8>> {
     let bytes = bytes(path);
     let start = bytes.windows(2).position(|two| two == b" _").expect("the arrays") + 2;

@@ -1,4 +1,4 @@
-//! A user who waits for the solver's thread before looking.
+//! A simulated user who waits for the solver's thread before looking.
 
 pub use egui_kittest::kittest::{NodeT, Queryable};
 pub use glam::DVec2;
@@ -45,7 +45,7 @@ impl Robot {
         robot
     }
 
-    /// The same, able to draw pictures of itself.
+    /// Like [`Self::open`], with the ability to draw pictures of the window.
     pub fn open_with_gpu(config: Config, preferences: Preferences) -> Self {
         Self::build(config, preferences, HarnessBuilder::wgpu)
     }
@@ -56,7 +56,7 @@ impl Robot {
         renderer: fn(HarnessBuilder<AppState>) -> HarnessBuilder<AppState>,
     ) -> Self {
         let live = Live::spawn(LiveOptions::default()).unwrap();
-        // What other piles do is seen by those tests that ask for them.
+        // Only tests that ask for other piles compute them.
         let preferences = Preferences { ensemble: false, starts_again: false, ..preferences };
         let state = AppState::new(live, config, preferences);
         let window = Harness::builder()
@@ -65,7 +65,7 @@ impl Robot {
         let harness = renderer(window).build_ui_state(ui, state);
         let mut robot = Self { harness };
         robot.until("a scene", |state| !state.run.frame.worlds.is_empty());
-        // Sliders that come with a scene move what is above them.
+        // The sliders of a scene move the controls above them.
         robot.frames(2);
         robot
     }
@@ -102,7 +102,7 @@ impl Robot {
         self.harness.query_all_by_label_contains(words).count() > 0
     }
 
-    /// All texts as they were painted last: where, within what, and whether dots stand for the rest of them.
+    /// All texts of the last frame: position, visible area, and true if dots replace a part.
     pub fn painted_texts(&self) -> Vec<PaintedText> {
         let mut all = Vec::new();
         for clipped in &self.harness.output().shapes {
@@ -111,7 +111,7 @@ impl Robot {
         all
     }
 
-    /// Those of them that do not show whole.
+    /// The texts that are not completely visible.
     pub fn cut_texts(&self) -> Vec<String> {
         let is_cut =
             |text: &PaintedText| text.elided || !text.within.contains_rect(text.rect.shrink(1.0));
@@ -172,7 +172,7 @@ impl Robot {
         self.settle();
     }
 
-    /// Waits until a file is written, and gives what is told of it.
+    /// Waits until a file is written. Returns the notice about it.
     pub fn written(&mut self) -> String {
         self.until("the file", |state| !state.is_writing());
         self.notice()
@@ -190,7 +190,7 @@ impl Robot {
         }
     }
 
-    /// Draws frames until every command has been carried out.
+    /// Draws frames until all commands have been carried out.
     pub fn settle(&mut self) {
         self.until("the solver's thread", |state| {
             let frame = &state.run.frame;
@@ -205,7 +205,7 @@ impl Robot {
         {
             self.click("More ▾");
         }
-        // Panels may still be opening, and the control may lie below the edge of the sidebar.
+        // Panels may still be opening, and the control may be below the edge of the sidebar.
         self.harness.get_by_label(label).scroll_to_me();
         for _ in 0..10 {
             self.harness.step();
@@ -241,7 +241,7 @@ impl Robot {
         self.settle();
     }
 
-    /// Types into the field of a number and presses enter.
+    /// Types into a number field and presses enter.
     pub fn type_number(&mut self, label: &str, text: &str) {
         self.harness.get_by_role_and_label(egui::Role::TextInput, label).focus();
         self.harness.step();
@@ -253,13 +253,13 @@ impl Robot {
         self.settle();
     }
 
-    /// Where a control lies, as a part of its width and height.
+    /// A position within a control, as fractions of its width and height.
     pub fn place(&self, control: &str, across: f32, down: f32) -> Pos2 {
         let rect = self.state().controls[control];
         rect.min + rect.size() * egui::vec2(across, down)
     }
 
-    /// Presses the mouse at one place and moves to another, button held.
+    /// Presses the mouse button at one place and moves to another.
     pub fn drag(&mut self, from: Pos2, to: Pos2) {
         self.harness.hover_at(from);
         self.button(from, true);
@@ -276,13 +276,13 @@ impl Robot {
     }
 }
 
-/// A text as it is painted.
+/// A painted text.
 pub struct PaintedText {
     pub text: String,
     pub rect: egui::Rect,
-    /// Outside of it nothing shows.
+    /// Visible area; the rest is cut.
     pub within: egui::Rect,
-    /// True where dots stand for a part of it.
+    /// True if dots replace a part of it.
     pub elided: bool,
 }
 
@@ -314,7 +314,7 @@ impl egui::DroppedFile for File {
     }
 }
 
-/// Positions and velocities of all grains, bit for bit.
+/// Bits of the positions and velocities of all grains.
 pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
     let bits = |grain: &GrainView| {
         let (at, velocity) = (grain.position, grain.velocity);
@@ -323,14 +323,14 @@ pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
     world.snapshot.grains.iter().map(bits).collect()
 }
 
-/// The paper's pile, solved well enough for a test.
+/// The paper's pile, solved accurately enough for a test.
 pub fn pile() -> Config {
     let mut config = Config::default();
     (config.solver.tolerance, config.solver.max_sweeps) = (Some(1e-3), Some(500));
     config
 }
 
-/// A scene of one grain in the pile's place, changed in some way, in a file of its own.
+/// A scene of one grain in place of the pile, changed by `change`, in its own file.
 pub fn one_grain(change: impl FnOnce(&mut Scene)) -> (tempfile::TempDir, Config) {
     let folder = folder();
     let mut scene = pile().scene(|_| true).expect("a scene");

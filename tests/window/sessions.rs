@@ -1,13 +1,13 @@
-//! Sessions, links and saved runs: what is open now, opened again later or elsewhere.
+//! Sessions, links and saved runs: opening the present state again later or elsewhere.
 
 use crate::robot::*;
 
-/// All that is recorded of a window's worlds, and where they are.
+/// Everything recorded of a window's worlds, and their present states.
 fn shown(robot: &Robot) -> Vec<(u64, f64, Vec<[u64; 6]>)> {
     robot.of_worlds(|world| (world.snapshot.observables.step, world.recorded_secs, bits(world)))
 }
 
-/// Two worlds with a change on the way, looked at before their end, and a run before them.
+/// Two worlds with a change in the middle, shown before their end, and an earlier run.
 fn two_worlds() -> Robot {
     let mut robot = Robot::open(pile());
     let base = robot.settings();
@@ -38,13 +38,13 @@ fn a_session_brings_back_worlds_record_past_and_window() {
     assert_eq!((again.state().run.frame.past.len(), past), (1, 1), "the run before is there");
     assert_eq!(again.state().preferences.theme, egui::ThemePreference::Dark);
     assert!(!again.state().preferences.plots);
-    // The panel that was open is so again: its contents are there.
+    // The panel that was open is open again: its contents are there.
     use egui_kittest::kittest::Queryable;
     for window in [&mut robot, &mut again] {
         window.frames(20);
         assert!(window.harness.query_by_label("Solved").is_some());
     }
-    // Every recorded moment, and what comes after it, is the same.
+    // Every recorded moment, and the steps after it, are equal.
     for window in [&mut robot, &mut again] {
         window.seek(0.024);
     }
@@ -97,7 +97,7 @@ fn a_file_that_is_no_whole_session_is_refused_in_a_sentence() {
         let notice = robot.notice();
         assert!(notice.contains(expected), "{name}: {notice}");
         assert_eq!(robot.steps(), 3, "the run before is still there");
-        // And before a window opens.
+        // The same before a window opens.
         let output = run(slump("--session").arg(&file));
         assert_eq!((output.status.code(), said(&output)), (Some(2), format!("slump: {notice}\n")));
     }
@@ -135,7 +135,7 @@ fn a_link_opens_the_moment_that_it_was_copied_at() {
     assert_eq!(places(&again), places(&robot), "{text}");
     let settings = |robot: &Robot| robot.of_worlds(|world| world.controls.settings);
     assert_eq!(settings(&again), settings(&robot));
-    // It is a run like any other: its link is the same, and it goes on alike.
+    // It is an ordinary run: its link is equal, and it continues in the same way.
     assert_eq!(copied(&mut again), text);
     for window in [&mut robot, &mut again] {
         window.take_steps(3);
@@ -193,7 +193,7 @@ fn saved(robot: &mut Robot) -> PathBuf {
     robot.saved()
 }
 
-/// Runs the program without a window and gives what it says on stderr.
+/// Runs the program without a window. Returns its stderr.
 fn headless(arguments: &[&str], out: &Path) -> String {
     said(&run(slump("--headless").args(arguments).arg("--save").arg(out)))
 }
@@ -239,11 +239,11 @@ fn an_earlier_moment_is_saved_as_it_was() {
     robot.take_steps(60);
     let end = saved(&mut robot);
     robot.state_mut().run.live.send(Command::Seek(at_secs));
-    // The seek may still be going on when this is asked for.
+    // The seek may still be running when this is requested.
     let again = saved(&mut robot);
     assert!(again != then && then != end, "no file replaces another");
     assert!(bytes(&again) == bytes(&then));
-    // And it goes on as the run did, without a window as well.
+    // It continues like the run, also without a window.
     let state = SavedState::open(&again).expect("a state");
     assert_eq!(state.scene.parameters.time_step_secs, 2e-3);
     let mut simulation = state.simulation;
@@ -274,7 +274,7 @@ fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
     saved(&mut robot);
     robot.take_steps(10);
     let end = robot.bits();
-    // The file that was just saved is the one that the panel offers.
+    // The panel offers the file that was just saved.
     robot.click("Open");
     assert_eq!((robot.steps(), robot.bits()), (25, before.clone()));
     assert_eq!(robot.world().recorded_from_secs, robot.state().run.frame.time_secs());
@@ -282,7 +282,7 @@ fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
     assert_eq!(robot.bits(), end);
     robot.key(egui::Key::R);
     assert_eq!((robot.steps(), robot.bits()), (25, before), "reset goes back to the file");
-    // Sums over all steps since t = 0 go along.
+    // The sums over all steps since t = 0 are included.
     robot.take_steps(1);
     assert_eq!(SavedState::open(&saved(&mut robot)).expect("a state").tally.steps, 26);
 }

@@ -1,4 +1,4 @@
-//! How far two pictures differ, and a picture of where.
+//! The difference of two pictures, as a number and as a picture.
 
 use std::path::{Path, PathBuf};
 
@@ -6,12 +6,12 @@ pub use image::codecs::png::FilterType;
 use image::codecs::png::{CompressionType, PngEncoder};
 use image::{DynamicImage, Rgba, RgbaImage};
 
-/// How far a picture may be from its golden.
+/// Largest allowed difference of a picture from its golden picture.
 #[derive(Clone, Copy)]
 pub struct Tolerance {
-    /// Largest difference in any channel, of 255.
+    /// Largest difference in any channel, out of 255.
     pub channel: u8,
-    /// Largest part of pixels that differ at all.
+    /// Largest fraction of pixels that differ.
     pub pixels: f64,
 }
 
@@ -51,7 +51,7 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// Differences, made twenty times larger, on black.
+/// The differences, amplified twenty times, on black.
 fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     let width = actual.width().max(golden.width());
     let height = actual.height().max(golden.height());
@@ -66,12 +66,12 @@ fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     })
 }
 
-/// Where a picture is kept.
+/// Path of a golden picture.
 pub fn golden_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/golden").join(format!("{name}.png"))
 }
 
-/// Writes a PNG file as small as the format allows: it stays in the history for ever.
+/// Writes a PNG file as small as the format allows, because the history keeps it for ever.
 pub fn save_small(picture: &RgbaImage, name: &str, filter: FilterType) {
     let file = std::fs::File::create(golden_path(name)).unwrap();
     let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, filter);
@@ -79,7 +79,8 @@ pub fn save_small(picture: &RgbaImage, name: &str, filter: FilterType) {
     opaque.write_with_encoder(encoder).unwrap();
 }
 
-/// The complaint about a picture that `kind` has drawn, if there is one; then what was drawn and the difference are left.
+/// The complaint about a picture that `kind` has drawn, if there is one. The picture and the difference are then
+/// written to files.
 pub fn complaint(
     actual: &RgbaImage,
     name: &str,

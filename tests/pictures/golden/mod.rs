@@ -1,15 +1,17 @@
-//! Pictures that must not change: what every renderer makes of stored states against the files beside
-//! this one.
+//! Golden pictures: drawings of stored states by every renderer, against the files in this folder.
 //!
-//! A GPU may differ by 2/255 in any channel and in 1 % of the pixels at all, the processor by 3/255
-//! anywhere. A mismatch leaves `target/golden/NAME.BACKEND.actual.png` and `.difference.png` (twenty
-//! times amplified). After a change that is meant, look at those and renew the files with
+//! A GPU may differ by 2/255 in any channel and in 1 % of the pixels at all, the processor by 3/255 anywhere. A
+//! mismatch writes
+//! `target/golden/NAME.BACKEND.actual.png` and `.difference.png` (amplified twenty times). After an intended change,
+//! look at those
+//! and renew the files with
 //!
 //! ```text
 //! SLUMP_BLESS=1 cargo test --release --test pictures -- --ignored with_driver
 //! ```
 //!
-//! which draws them on Vulkan, or else on OpenGL, never on the processor. The tests in `with_driver` need one of the two.
+//! which draws them on Vulkan, or else on OpenGL, never on the processor. The tests in `with_driver` need one of the
+//! two.
 
 mod compare;
 mod states;
@@ -31,7 +33,7 @@ fn the_processor_draws_the_pictures_that_are_kept() {
     assert_kept(&mut [("cpu", &mut cpu)], CPU);
 }
 
-/// Draws each golden picture by some renderers, named by their kind, and compares it with its file.
+/// Draws each golden picture by some renderers, each with the name of its kind, and compares it with its file.
 fn assert_kept(renderers: &mut [(&'static str, &mut Renderer)], tolerance: Tolerance) {
     let mut complaints = Vec::new();
     for (name, draw) in &GOLDENS {
@@ -48,7 +50,7 @@ fn assert_kept(renderers: &mut [(&'static str, &mut Renderer)], tolerance: Toler
 mod with_driver {
     use super::*;
 
-    /// Every GPU of this machine, by the kind of its driver.
+    /// All GPUs of this machine, each with the name of its driver's kind.
     fn gpus() -> Vec<(&'static str, Renderer)> {
         let mut found = Vec::new();
         for (kind, choice) in [("vulkan", RendererChoice::Vulkan), ("gl", RendererChoice::Gl)] {
@@ -87,7 +89,7 @@ mod with_driver {
     }
 }
 
-/// Name of the file without its ending, and what draws it.
+/// Name of the file without its ending, and the function that draws it.
 pub type Golden = (&'static str, fn(&mut Renderer) -> Result<RgbaImage>);
 
 pub const GOLDENS: [Golden; 5] = [

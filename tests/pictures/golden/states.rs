@@ -1,5 +1,5 @@
-//! Hand-made moments of a run: stored numbers and plain arithmetic, nothing simulated, so that they
-//! never change when the physics does.
+//! Handmade moments of a run: stored numbers and plain arithmetic without any simulation, so that they do not change
+//! with the physics.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use slump::world::{Boundary, Disc};
 
 /// Mean diameter of the pile, m.
 const D: f64 = 0.005;
-/// Radii of the pile's grains in units of d/2, taken in turn.
+/// Radii of the pile's grains in units of d/2, used in turn.
 const RADII: [f64; 7] = [0.97, 0.88, 1.0, 0.93, 0.9, 0.99, 0.95];
-/// Greys of the pile's grains, taken in turn.
+/// Greys of the pile's grains, used in turn.
 const TONES: [u8; 5] = [205, 225, 190, 240, 175];
 
 fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
@@ -67,8 +67,8 @@ pub fn pile() -> Snapshot {
     }
 }
 
-/// Contacts between all neighbours nearer than 1.06 times the sum of their radii; steep ones push,
-/// flat ones high up pull.
+/// Contacts between all neighbours closer than 1.06 times the sum of their radii. Steep ones push, flat ones high up
+/// pull.
 fn pile_contacts(grains: &mut [GrainView], fixed: &[Disc]) -> Vec<ContactView> {
     let mut contacts = Vec::new();
     for i in 0..grains.len() {

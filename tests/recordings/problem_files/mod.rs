@@ -1,4 +1,4 @@
-//! Contact problems as files: written from a scene, read back, checked, and solved alone.
+//! Contact problems as files: written from a scene, read back, checked, and solved on their own.
 
 mod faults;
 

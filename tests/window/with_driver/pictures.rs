@@ -1,4 +1,4 @@
-//! What the panels look like at the start, before the first step: what is solved how changes nothing.
+//! Pictures of the panels before the first step, which do not depend on the solver.
 
 #[path = "../../pictures/golden/compare.rs"]
 mod compare;
@@ -14,7 +14,7 @@ fn check(robot: &mut Robot, name: &str) {
     robot.harness.remove_cursor();
     robot.frames(30);
     let mut actual = robot.harness.render().unwrap();
-    // A window is opaque, whatever its pixels say.
+    // A window is opaque, whatever its pixels contain.
     actual.pixels_mut().for_each(|pixel| pixel.0[3] = 255);
     if std::env::var_os("SLUMP_BLESS").is_some() {
         save_small(&actual, name, FilterType::Adaptive);

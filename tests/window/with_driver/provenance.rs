@@ -1,4 +1,4 @@
-//! What files of the window say of themselves, and what their names say.
+//! Provenance in the files that the window writes, and in their names.
 
 use crate::robot::*;
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ fn open(folder: &Path) -> Robot {
     Robot::open_with_gpu(Config::of_scene("pile"), preferences)
 }
 
-/// Presses a key or button that writes one file, and tells which.
+/// Presses a key or button that writes one file. Returns its path.
 fn written(robot: &mut Robot, ask: impl Fn(&mut Robot), ending: &str) -> PathBuf {
     let folder = robot.state().preferences.folder.clone();
     ask(robot);
@@ -25,7 +25,7 @@ fn written(robot: &mut Robot, ask: impl Fn(&mut Robot), ending: &str) -> PathBuf
     files.pop().expect("a file")
 }
 
-/// The texts that a PNG file carries, and its size.
+/// The texts in a PNG file, and its size.
 fn texts(path: &Path) -> (BTreeMap<String, String>, [u32; 2]) {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a picture");
@@ -61,7 +61,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     assert!(texts["Settings"].contains("--bond 35 --bond-acceleration 0 --dt 0.002"), "{texts:?}");
     assert_eq!((texts["Scene"].as_str(), texts["Time"].as_str()), ("pile", "0.01 s"));
     assert_eq!(texts.get("Changes"), None);
-    // The command comes to the same state: its last row is that of the window.
+    // The command reaches the same state: its last row equals the window's.
     let words = shlex::split(&texts["Command line"]).expect("words");
     let frames = folder.path().join("frames");
     succeed(slump("").args(&words[1..]).arg("--frames").arg(&frames));
@@ -73,7 +73,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     let row = robot.observables();
     assert_eq!(column("step"), row.step.to_string());
     assert_eq!(column("slump").parse::<f64>(), Ok(row.slump), "to the last bit");
-    // What no command makes says so.
+    // A file that no command makes says so.
     settings.parameters.bond = 5.0;
     robot.state_mut().run.change(0, settings);
     robot.key(egui::Key::ArrowRight);

@@ -1,4 +1,4 @@
-//! Videos and animations that the window makes of its record.
+//! Videos and animations of the window's record.
 
 use std::io::BufReader;
 
@@ -11,7 +11,7 @@ fn film(robot: &mut Robot) -> (PathBuf, String) {
     made(robot, "Save video")
 }
 
-/// A window whose pictures are so large.
+/// A window with pictures of this size.
 pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
     let preferences = Preferences {
         folder: folder.to_owned(),
@@ -24,7 +24,7 @@ pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
     robot
 }
 
-/// Has a button make a file of moving pictures, and gives it and what is told of it.
+/// Lets a button make a video or animation. Returns its path and the notice about it.
 pub(crate) fn made(robot: &mut Robot, button: &str) -> (PathBuf, String) {
     robot.click(button);
     let told = robot.written();
@@ -54,7 +54,7 @@ fn difference(one: &RgbaImage, other: &RgbaImage) -> f64 {
     sum as f64 / one.as_raw().len() as f64
 }
 
-/// The first comment of a GIF, which stands in blocks of at most 255 bytes, each with its length before it.
+/// The first comment of a GIF. It is in blocks of at most 255 bytes, each after its length.
 fn comment(gif: &[u8]) -> String {
     let begin = gif.windows(2).position(|two| two == [0x21, 0xfe]).expect("a comment") + 2;
     let (mut rest, mut words) = (&gif[begin..], Vec::new());
@@ -82,15 +82,15 @@ fn the_record_is_an_animation_at_the_pace_of_time() {
         assert_eq!(frame.buffer().dimensions(), (161, 100));
     }
     assert!(difference(frames[0].buffer(), frames[5].buffer()) > 0.5, "the pile moves");
-    // It says what it is of, and the same record makes the same file.
+    // It names its origin, and the same record makes the same file.
     let bytes = bytes(&path);
     let said = comment(&bytes);
     assert!(said.contains("Command line: slump --headless "), "{said}");
     assert!(bytes == std::fs::read(animation(&mut robot)).unwrap());
 }
 
-/// What a file cannot say is not asked of it: pictures follow each other by whole hundredths of a second, and by no
-/// fewer than two; the pace of time stays that which was asked for.
+/// A GIF's pictures follow each other by whole hundredths of a second, at least two. Other rates are not requested of
+/// it; the pace of time stays as requested.
 #[test]
 #[ignore = "needs a graphics driver"]
 fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {
@@ -127,10 +127,10 @@ mod with_ffmpeg {
     #[ignore = "needs ffmpeg and a graphics driver"]
     fn the_record_is_a_video_at_the_pace_of_time() {
         let folder = folder();
-        // A side that is odd is one pixel longer.
+        // An odd side becomes one pixel longer.
         let mut robot = open(folder.path(), [161, 100]);
         robot.take_steps(200);
-        // Where the timeline stands is no matter.
+        // The position of the timeline does not matter.
         robot.seek(0.05);
         let (path, told) = film(&mut robot);
         assert!(told.ends_with(" of 6 pictures"), "0 to 0.2 s at 25 a second: {told}");
@@ -139,7 +139,7 @@ mod with_ffmpeg {
         let lines = video.comment;
         assert!(lines.contains("Command line: slump --headless "), "{lines}");
         assert!(lines.contains("--duration 0.2"), "{lines}");
-        // The same record makes the same file, and ten times slower ten times as many pictures.
+        // The same record makes the same file; ten times slower it has ten times as many pictures.
         let (again, _) = film(&mut robot);
         assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
         let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Film");
@@ -158,7 +158,7 @@ mod with_ffmpeg {
         let mut robot = open(folder.path(), [240, 120]);
         robot.state_mut().preferences.style.colour_by = slump::render::ColourBy::Speed;
         let base = robot.settings();
-        // The second steps so far that pictures show some of its moments twice.
+        // The second world has such long steps that pictures show some of its moments twice.
         robot.send(Command::Compare(vec![base.over(1e-3), base.over(5e-3)]));
         robot.take_steps(20);
         robot.state_mut().preferences.video_rate_hz = 240.0;
