@@ -1,8 +1,8 @@
-//! Candidate pairs: the program's own search (which takes the grid or the tree by the discs' size
-//! ratio), the hashed cell grid alone, and parry's bounding volume hierarchy walked against itself:
-//! built anew every time, or kept and refitted to the moved grains, with or without its own upkeep. All
-//! give the same sorted list, which is checked first; the time is that of bringing the structure up to
-//! date and of listing the pairs, on one thread.
+//! Compares searches for candidate pairs: Slump's own search (a grid or a tree, depending on the size ratio of the
+//! discs), the hashed cell grid alone, and parry's bounding volume hierarchy traversed against itself. The hierarchy is
+//! rebuilt every time, or kept and refitted to the moved grains, with or without its own upkeep. The bench first checks
+//! that all searches give the same sorted list. It then times the update of the structure and the listing of the pairs,
+//! on one thread.
 
 mod common;
 
@@ -123,8 +123,7 @@ fn refit(tree: &mut Bvh, world: &World, skin: f64) {
     tree.refit_without_opt();
 }
 
-/// A state so different that the grid's list has to be built anew: single grains have moved by more
-/// than half the skin.
+/// A state in which single grains have moved by more than half the skin, so that the grid's list must be rebuilt.
 fn moved(world: &World, skin: f64) -> World {
     let mut moved = world.clone();
     let mut random = Pcg64::seed_from_u64(1);
@@ -135,8 +134,8 @@ fn moved(world: &World, skin: f64) -> World {
     moved
 }
 
-/// Checks that all searches give the same list on two states, the second being that of the tree;
-/// gives the list.
+/// Checks that all searches give the same list on two states, the second of which is the tree's state. Returns the
+/// list.
 fn checked_pairs(
     states: [&World; 2],
     skin: f64,
@@ -157,7 +156,7 @@ fn checked_pairs(
     pairs
 }
 
-/// Times all searches on so many discs, and gives a line that sums it up.
+/// Times all searches on `count` discs and returns a summary line.
 fn compare(criterion: &mut Criterion, kind: &str, count: usize) -> String {
     let world = packed(kind, count);
     let skin = 0.2 * world.mean_diameter;

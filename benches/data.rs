@@ -1,9 +1,9 @@
-//! What a recording costs: 10,000 discs, 40 sweeps a step and a frame each ten steps, with and without one in
-//! each format, from its start to its end.
+//! Cost of a recording: 10,000 discs, 40 sweeps per step and a frame every ten steps, without a recording and with one
+//! in each format, from its start to its end.
 //!
 //! ```text
 //! cargo bench --bench data
-//! taskset --cpu-list 0 cargo bench --bench data    # where the writer has no processor of its own
+//! taskset --cpu-list 0 cargo bench --bench data    # the writer has no processor of its own
 //! ```
 
 mod common;
@@ -18,7 +18,7 @@ const GRAINS: usize = 10_000;
 const STEPS: u64 = 400;
 const STEPS_A_FRAME: u64 = 10;
 
-/// The discs at rest, to be stepped with a fixed number of sweeps.
+/// The discs at rest, with a fixed number of sweeps per step.
 fn start() -> Simulation {
     let mut simulation = common::settled(GRAINS);
     let mut settings = *simulation.solver();
@@ -28,7 +28,7 @@ fn start() -> Simulation {
     simulation
 }
 
-/// Takes the steps, and records them in some formats.
+/// Takes the steps and records them in the given formats.
 fn run(start: &Simulation, formats: &[FormatName]) -> u64 {
     let folder = tempfile::tempdir().expect("a folder");
     let mut simulation = start.clone();

@@ -1,4 +1,4 @@
-//! What measuring a moment costs, for 10,000 discs on a floor, all that is measured at once.
+//! Cost of computing all granular measures of one moment, for 10,000 discs on a floor.
 
 mod common;
 

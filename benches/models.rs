@@ -1,4 +1,4 @@
-//! What a scene saves by computing no more physics than it needs.
+//! Time that a scene saves by computing only the physics that it needs.
 
 mod common;
 
@@ -12,8 +12,8 @@ use slump::world::{Parameters, Physics};
 
 const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, cohesion: true };
 
-/// The cradle from just before the shock on, with other physics. Head-on, friction and spin stay 0,
-/// so every model does the same sweeps.
+/// The cradle from just before the shock on, with the given physics. The collision is head-on, so friction and spin
+/// stay 0, and every model does the same sweeps.
 fn cradle_with(physics: Physics) -> Simulation {
     let line = cradle();
     let parameters = Parameters { friction: 0.5, ..line.parameters };

@@ -1,5 +1,5 @@
-//! Whole steps at size: what a step of some sweeps costs from detection to the new state, one contact after the
-//! other (`nsgs`) and by tiles (`nsgs-parallel`) on one thread and two, under both kinds of stop.
+//! Time of whole steps, from detection to the new state, with a fixed number of sweeps: sequential (`nsgs`) and by
+//! tiles (`nsgs-parallel`), on one thread and two, with both kinds of stopping test.
 
 mod common;
 
@@ -9,10 +9,10 @@ use common::timing::{criterion, least_secs};
 use rayon::ThreadPoolBuilder;
 use slump::solver::{Method, SolverSettings, StopTest};
 
-/// Sweeps of every step that is timed.
+/// Sweeps of every timed step.
 const SWEEPS: u32 = 40;
 
-/// Numbers of discs; others can be named: `SLUMP_DISCS=100000,1000000 cargo bench --bench steps`.
+/// Numbers of discs. Other numbers can be given: `SLUMP_DISCS=100000,1000000 cargo bench --bench steps`.
 const DISCS: [usize; 3] = [2_000, 10_000, 50_000];
 
 fn main() {
@@ -22,7 +22,7 @@ fn main() {
         Some(text) => text.split(',').map(|count| count.parse().expect("a number")).collect(),
         None => DISCS.to_vec(),
     };
-    // Inside a pool a step is one of several and keeps to its thread.
+    // Inside a pool, a step counts as one of several simulations and stays on its thread.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let mut criterion = criterion();
     let mut summary = Vec::new();
@@ -31,7 +31,7 @@ fn main() {
         for stop in [StopTest::RelativeChange, StopTest::Residual] {
             let mut time = |method: Method, threads: usize| {
                 let mut simulation = settled.clone();
-                // From a cold start to a tolerance that it cannot meet, every step takes all its sweeps.
+                // A cold start and a tolerance that cannot be met make every step take all its sweeps.
                 let settings = SolverSettings {
                     method,
                     stop,

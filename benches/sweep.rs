@@ -1,5 +1,5 @@
-//! What one contact update costs, and what a step costs around its sweeps; and what a whole solve of
-//! sweeps costs a contact one after the other and by colours.
+//! Cost of one contact update, cost of a step apart from its sweeps, and cost per contact of a whole solve,
+//! sequentially and by colours.
 
 mod common;
 
@@ -13,11 +13,11 @@ use slump::solver::{
     Memory, Method, Ordering, SolverSettings, SpinningPlane, StopTest, solve, sweep,
 };
 
-/// Sweeps of every step that is timed: a fixed amount of work.
+/// Sweeps of every timed step, so that the work is fixed.
 const SWEEPS: u32 = 50;
 
-/// ns that a solve of the simulation's next problem takes a contact and sweep, with setting up what the
-/// method needs: in the default order; by colours one by one, side by side, and so on two threads.
+/// Time of a solve of the simulation's next problem, including set-up, ns per contact and sweep: in the default order,
+/// by colours one after the other, by colours in parallel, and in parallel on two threads.
 fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) -> String {
     let one_by_one = SolverSettings {
         method: Method::Nsgs,
@@ -64,7 +64,7 @@ fn main() {
     for count in [138, 2_000, 10_000] {
         let mut simulation = common::with(&common::settled(count), |numbers| numbers.bond = 20.0);
         let mut settings = *simulation.solver();
-        // From a cold start to a tolerance that it cannot meet, every step takes all its sweeps.
+        // A cold start and a tolerance that cannot be met make every step take all its sweeps.
         (settings.stop, settings.tolerance) = (StopTest::RelativeChange, 1e-15);
         (settings.max_sweeps, settings.warm_start) = (SWEEPS, false);
         simulation.set_solver(settings).expect("proper settings");

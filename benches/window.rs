@@ -1,11 +1,11 @@
-//! What the window costs: frames a second while the solver runs flat out, steps a second with the
-//! window open against without, and how soon a slider shows. Everything but the display itself: the
-//! real panels, drawn into memory by the driver that a window would use.
+//! Cost of the window: frames per second while the solver runs at full speed, steps per second with the window open and
+//! without it, and the latency of a slider. The display itself is not included: the real panels are drawn into memory
+//! by the driver that a window would use.
 //!
 //! ```text
 //! cargo bench --bench window
-//! cargo bench --bench window -- others     # what the world in front loses to other piles alone
-//! cargo bench --bench window -- frames     # frames, steps and pauses of small and large scenes alone
+//! cargo bench --bench window -- others     # only: slowdown of the world in front by other piles
+//! cargo bench --bench window -- frames     # only: frames, steps and pauses of small and large scenes
 //! ```
 
 mod common;
@@ -20,16 +20,16 @@ use slump::solver::{Method, SolverSettings, StopTest};
 
 /// Pixels of the window.
 const SIZE: [u32; 2] = [1280, 800];
-/// How long frames are counted.
+/// Time during which frames are counted.
 const COUNTED: Duration = Duration::from_secs(4);
-/// Steps of the pile that are timed: its collapse.
+/// Timed steps of the pile, during its collapse.
 const STEPS: u64 = 1500;
-/// Repeats, of which the fastest counts.
+/// Number of repeats; the fastest counts.
 const REPEATS: usize = 3;
-/// Steps of the pile that other piles are computed beside, at 1e-3 s, and how often.
+/// Steps of the pile that is timed while other piles are computed, at 1e-3 s, and the number of repeats.
 const COLLAPSE: u64 = 900;
 const TURNS: usize = 10;
-/// Frames that are timed; the fastest counts.
+/// Number of timed frames; the fastest counts.
 const FRAMES: usize = 100;
 /// Changes of the time step whose latency is measured.
 const CHANGES: usize = 40;
@@ -73,7 +73,7 @@ impl Window {
         }
     }
 
-    /// Time to lay out the panels and make their triangles, without drawing a pixel, ms: the least of all repeats.
+    /// Time to lay out the panels and make their triangles, without drawing pixels, ms: the least of all repeats.
     fn panels(&mut self) -> f64 {
         let Self { state, context, .. } = self;
         let size = egui::vec2(SIZE[0] as f32, SIZE[1] as f32);
@@ -88,7 +88,7 @@ impl Window {
         millis.fold(f64::INFINITY, f64::min)
     }
 
-    /// How long a run takes to stand still after it is told to, ms: median and worst. Nothing is drawn meanwhile.
+    /// Time from the command to pause until the run stands still, ms: median and worst. Nothing is drawn meanwhile.
     fn pauses(&mut self) -> [f64; 2] {
         let mut millis: Vec<f64> = (0..CHANGES)
             .map(|_| {
@@ -107,7 +107,7 @@ impl Window {
         [millis[CHANGES / 2], millis[CHANGES - 1]]
     }
 
-    /// The newest step that the solver has handed out.
+    /// The newest step that the solver has published.
     fn newest_step(&mut self) -> u64 {
         let frame = self.state.run.live.latest();
         frame.worlds.first().map_or(0, |world| world.snapshot.observables.step)
@@ -146,7 +146,7 @@ fn pile() -> Simulation {
 }
 
 fn main() {
-    // Criterion's way of asking for the tests of a bench.
+    // With this argument, criterion asks for the tests of a bench.
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
@@ -162,8 +162,8 @@ fn main() {
     beside_other_piles();
 }
 
-/// What the world in front loses to other piles that idle cores compute: the pile's collapse, in turns with and
-/// without them. Nothing is drawn meanwhile.
+/// Measures by how much other piles on idle cores slow down the world in front: the pile's collapse, alternately with
+/// and without other piles. Nothing is drawn meanwhile.
 fn beside_other_piles() {
     let cache = tempfile::tempdir().expect("a folder");
     let mut least = [f64::INFINITY; 2];
@@ -219,7 +219,7 @@ fn frames() {
     }
 }
 
-/// Discs that settle, solved as the window does by itself where they are so many: forty sweeps by all cores.
+/// Settling discs, solved as the window solves large scenes by default: forty sweeps on all cores.
 fn large(count: usize) -> Simulation {
     let mut simulation = common::settled(count);
     let settings = SolverSettings {
@@ -266,12 +266,12 @@ fn steps() {
         window.state.run.live.send(Command::Play);
         loop {
             let news = window.state.run.live.latest().number != shown;
-            // The end is looked for in the newest frame, drawn or not: that a picture of it comes
-            // later is no loss of the solver's.
+            // The end is detected in the newest frame, drawn or not: a delay of the picture is not a delay of the
+            // solver.
             if window.newest_step() >= STEPS {
                 break;
             }
-            // As the loop of a window does: a frame when there is something new, not too often.
+            // Like the event loop of a window: draws a frame when there is something new, but not too often.
             if news && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
                 drawn = Instant::now();
                 window.draw();

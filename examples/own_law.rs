@@ -1,5 +1,4 @@
-//! A contact law of one's own: grains whose restitution falls with the speed that they meet with, as that
-//! of viscoelastic spheres does.
+//! A user-defined contact law: grains whose restitution decreases with the impact speed, like viscoelastic spheres.
 //!
 //! cargo run --release --example own_law
 
@@ -10,7 +9,7 @@ use slump::solver::{Approach, Model};
 
 /// e(v) = 1/(1 + (v/v₀)^⅕).
 struct Viscoelastic {
-    /// v₀, m/s: at this speed half of it is left.
+    /// v₀, m/s: the impact speed at which e = ½.
     half_speed: f64,
 }
 
@@ -22,7 +21,7 @@ impl Viscoelastic {
 
 impl Advance for Viscoelastic {
     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
-        // What the law adds to the normal velocity of a contact: e times the one before.
+        // Velocity that the law adds to the normal velocity of a contact: e times the velocity before the step.
         stage.prepare(settings, |Approach { velocity, .. }| {
             self.restitution(velocity.abs()) * velocity
         });

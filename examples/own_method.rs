@@ -1,4 +1,4 @@
-//! A method of one's own: over-relaxed Gauss–Seidel, s ← s + ω (G(s) − s), beside the plain sweeps.
+//! A user-defined solver: over-relaxed Gauss–Seidel, s ← s + ω (G(s) − s), compared with plain sweeps.
 //!
 //! cargo run --release --example own_method
 
@@ -7,11 +7,11 @@ use slump::scene::built_in;
 use slump::sim::{Advance, Settings, Stage, StepResult};
 use slump::solver::{ContactSystem, Model, SolveReport};
 
-/// Sweeps with this ω, down to a residual.
+/// Sweeps with relaxation factor ω, repeated until a residual is reached.
 struct OverRelaxed {
     factor: f64,
     residual: f64,
-    /// Of all steps.
+    /// Number of sweeps over all steps.
     sweeps: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The paper's pile at two time steps: how far it slumps in a second.
+//! Slump of the paper's pile after one second, at two time steps.
 //!
 //! cargo run --release --example pile_slump
 

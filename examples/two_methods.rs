@@ -1,4 +1,4 @@
-//! One step of a falling pile, solved by two methods: what each needs for the same residual.
+//! One step of a falling pile, solved by two methods, with their costs for the same residual.
 //!
 //! cargo run --release --example two_methods
 
@@ -10,7 +10,7 @@ use slump::solver::{
     Memory, Method, Model, SolverSettings, StepProblem, StopTest, residual, solve,
 };
 
-/// Solves a problem with these settings, and tells what that took.
+/// Solves a problem with these settings and reports the cost.
 struct Solve(SolverSettings);
 
 impl ProblemVisitor for Solve {
@@ -30,7 +30,7 @@ impl ProblemVisitor for Solve {
 
 fn main() -> Result<()> {
     let mut scene = built_in("pile")?;
-    // Without it many steps have no solution (docs/accuracy-and-cost.md).
+    // Without this threshold many steps have no solution (docs/accuracy-and-cost.md).
     scene.parameters.restitution_threshold = 2.0;
     let mut simulation = scene.simulation()?;
     simulation.take_steps(50)?;

@@ -1,7 +1,9 @@
-//! A law of finite range that goes by the gap, as LMGC90's for wet grains does (`IQS_WET_DS_CLB`): a pair pulls with C₀ while
-//! its gap is at most W as a step begins. Beside the paper's law, which pulls while the pair touches, and `range`, which pulls
-//! once it has touched until it has been opened by δc = W: mean slump of sixteen piles at three time
-//! steps, ± 95 %, with little restitution and with more.
+//! A contact law of finite range that depends on the gap, as LMGC90's law for wet grains does (`IQS_WET_DS_CLB`): a
+//! pair attracts with C₀ if its gap is at most W when a step begins.
+//!
+//! The example compares it with the paper's law, in which a pair attracts while it touches, and with `range`, in which
+//! a pair attracts from its first touch until it has opened by δc = W. It prints the mean slump of sixteen piles at
+//! three time steps, ± 95 %, with little restitution and with more.
 //!
 //! cargo run --release --example wet_law        # eight minutes on two cores
 
@@ -26,7 +28,7 @@ impl Advance for Wet {
         let range = RANGE_IN_DIAMETERS * stage.world().mean_diameter;
         let time_step_secs = settings.parameters.time_step_secs;
         let restitution = settings.parameters.restitution;
-        // What has a gap comes to touch at the end of the step at the earliest; what touches bounces.
+        // A pair with a gap touches at the end of the step at the earliest; a pair in contact rebounds.
         let rebound = |Approach { gap, velocity, .. }| {
             if gap > 0.0 { gap / time_step_secs } else { restitution * velocity }
         };
@@ -36,14 +38,14 @@ impl Advance for Wet {
     }
 }
 
-/// The ways to step that are compared.
+/// The compared contact laws.
 #[derive(Clone, Copy)]
 enum Law {
     Of(Stepper),
     Wet,
 }
 
-/// What all laws share of a comparison.
+/// Contact parameters that all laws of a comparison share.
 #[derive(Clone, Copy)]
 struct Contacts {
     bond: f64,
@@ -69,13 +71,13 @@ fn slump(grains: &[Grain], law: Law, contacts: Contacts, time_step_secs: f64) ->
     Ok(simulation.observables().slump)
 }
 
-/// A mean with half its 95 % interval.
+/// Formats a mean with half its 95 % interval.
 fn written(values: &[f64]) -> String {
     let mean = mean(values);
     format!("{:+.3} ± {:.3}", mean.mean, mean.high - mean.mean)
 }
 
-/// What piles of the same seed differ by.
+/// Differences between piles of the same seed.
 fn less(ones: &[f64], others: &[f64]) -> Vec<f64> {
     ones.iter().zip(others).map(|(one, other)| one - other).collect()
 }
@@ -121,7 +123,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Means over Δt, seed by seed: runs of one seed are not independent.
+/// Means over Δt for each seed, because runs with one seed are not independent.
 fn of_seeds(differences: &[f64], seeds: usize) -> Vec<f64> {
     let of_seed = |seed: usize| {
         let all: Vec<f64> = differences.iter().skip(seed).step_by(seeds).copied().collect();

@@ -1,4 +1,4 @@
-//! Pictures one after the other: animations, and videos that ffmpeg encodes.
+//! Picture sequences: GIF animations, and videos that ffmpeg encodes.
 
 use std::fs::File;
 use std::io::ErrorKind::NotFound;
@@ -14,12 +14,12 @@ use tempfile::NamedTempFile;
 use crate::error::{Error, Result};
 use crate::output::{DraftFile, PendingFile, Texts, folder_of};
 
-/// Fewest and most pictures a second that players are asked for.
+/// Lowest and highest frame rate of a video, Hz.
 pub(crate) const VIDEO_RATES_HZ: [f64; 2] = [1.0, 240.0];
-/// The shortest and longest side of a video, px: encoders take none that are longer.
+/// Shortest and longest side of a video, px. Encoders refuse longer ones.
 pub(crate) const VIDEO_SIDES: [u32; 2] = [16, 16_384];
-/// Encoders of ffmpeg whose videos browsers play, with the options for good pictures. The first one that ffmpeg has
-/// is used.
+/// ffmpeg encoders of videos that browsers play, with options for good pictures. The first one that ffmpeg has is
+/// used.
 const ENCODERS: [(&str, &[&str]); 4] = [
     ("libx264", &["-crf", "18"]),
     ("libopenh264", &["-b:v", "8M"]),
@@ -27,17 +27,17 @@ const ENCODERS: [(&str, &[&str]); 4] = [
     ("libvpx-vp9", &["-crf", "24", "-b:v", "0", "-cpu-used", "4"]),
 ];
 
-/// Hundredths of a second in a second, the unit in which a file says how long a picture is shown.
+/// Hundredths of a second per second: the unit of a picture's duration in a GIF.
 const CENTISECS: f64 = 100.0;
-/// Viewers take what is shorter for a mistake and show it for a tenth of a second.
+/// Shortest duration of a picture, in hundredths of a second. Viewers show shorter ones for a tenth of a second.
 const LEAST_CENTISECS: f64 = 2.0;
-/// The encoder looks at every n-th pixel when it chooses colours: at so many pixels, and at all of a small picture, in
-/// which a legend of colours has few.
+/// Number of pixels from which the GIF encoder chooses the colours: it looks at every n-th pixel, and at all pixels
+/// of a small picture, in which the legend's colours have few pixels.
 const LOOKED_AT: u32 = 100_000;
-/// It looks at one in ten at least.
+/// Largest n: the encoder looks at one in ten pixels at least.
 const MOST_PASSED: u32 = 10;
 
-/// A GIF that is there once it is finished.
+/// A GIF. The file gets its name when it is finished.
 pub(crate) struct Animation {
     path: PathBuf,
     picture_centisecs: u16,
@@ -45,12 +45,12 @@ pub(crate) struct Animation {
     encoder: Option<Encoder<DraftFile>>,
     draft: PendingFile,
     pictures: usize,
-    /// Length of the pictures that are in the file, bytes; none where it has no lengths.
+    /// Length of the pictures in the file, bytes; `None` if the file has no length.
     whole: Option<u64>,
 }
 
 impl Animation {
-    /// Pictures a second of an animation that comes nearest to so many, since a file counts in hundredths of a second.
+    /// The possible frame rate nearest to `rate_hz`: a GIF counts durations in hundredths of a second.
     #[cfg(feature = "panels")]
     pub(crate) fn nearest_rate_hz(rate_hz: f64) -> f64 {
         CENTISECS / f64::from(Self::centisecs(rate_hz))
@@ -60,14 +60,14 @@ impl Animation {
         (CENTISECS / rate_hz).round().max(LEAST_CENTISECS) as u16
     }
 
-    /// Starts an animation of so many pictures a second, or of [`Self::nearest_rate_hz`].
+    /// Starts an animation with this many pictures per second, or with [`Self::nearest_rate_hz`].
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
         let draft = PendingFile::start(path)?;
         let (path, picture_centisecs) = (path.to_owned(), Self::centisecs(rate_hz));
         Ok(Self { path, picture_centisecs, encoder: None, draft, pictures: 0, whole: None })
     }
 
-    /// Adds a picture. The first comes after what the animation says of itself, a comment.
+    /// Adds a picture. Before the first one, the texts are written as a comment.
     pub(crate) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
         let added = self.encode(image, texts);
         let file = self.draft.file();
@@ -75,7 +75,7 @@ impl Animation {
             self.pictures += 1;
             self.whole = file.stream_position().ok();
         } else if let Some(whole) = self.whole {
-            // A part of the picture may be there.
+            // The file may contain a part of the picture.
             let _ = file.set_len(whole).and_then(|()| file.seek(SeekFrom::Start(whole)));
         }
         added.map_err(|error| Error::file(&self.path, error))
@@ -94,7 +94,7 @@ impl Animation {
                 let mut encoder = Encoder::new(self.draft.file().try_clone()?, width, height, &[])?;
                 encoder.set_repeat(Repeat::Infinite)?;
                 let lines = texts.lines();
-                // A block of a comment holds no more than 255 bytes.
+                // A block of a comment has at most 255 bytes.
                 let blocks: Vec<&[u8]> = lines.as_bytes().chunks(255).collect();
                 encoder.write_raw_extension(AnyExtension(Extension::Comment as u8), &blocks)?;
                 none.insert(encoder)
@@ -106,7 +106,7 @@ impl Animation {
         encoder.write_frame(&frame)
     }
 
-    /// Ends the animation and gives it its name. Whether there is one: none has no picture.
+    /// Ends the animation and gives the file its name. Returns false if there was no picture and hence no file.
     pub(crate) fn finish(self) -> Result<bool> {
         // The encoder writes the end of the file when it is dropped.
         drop(self.encoder);
@@ -122,7 +122,7 @@ fn too_large() -> EncodingError {
         .into()
 }
 
-/// Refuses a name of another format than the one that is written there. A device or a pipe has any name.
+/// Refuses a name that does not end like the file's format. Devices and pipes may have any name.
 pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str) -> Result<()> {
     let is_special = path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir());
     let has_ending = path.extension().is_some_and(|it| it.eq_ignore_ascii_case(ending));
@@ -134,23 +134,23 @@ pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str)
     Err(Error::value(option, path.display(), allowed))
 }
 
-/// A video in MP4 that is there once it is finished.
+/// A video in MP4. The file gets its name when it is finished.
 pub(crate) struct Video {
     path: PathBuf,
     rate_hz: f64,
-    /// Runs from the first picture on, which tells the size.
+    /// Started with the first picture, which determines the size.
     ffmpeg: Option<Ffmpeg>,
 }
 
 impl Video {
-    /// Starts a video of so many pictures a second.
+    /// Starts a video with this many pictures per second.
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
         check_ffmpeg(path.display())?;
         Ok(Self { path: path.to_owned(), rate_hz, ffmpeg: None })
     }
 
-    /// Adds a picture. All have the size of the first, with even sides. The video carries the first one's texts as a
-    /// comment.
+    /// Adds a picture. All pictures have the size of the first, with even sides. The texts of the first picture
+    /// become the video's comment.
     pub(crate) fn add(&mut self, image: &RgbaImage, texts: &Texts) -> Result<()> {
         let added = match &mut self.ffmpeg {
             Some(ffmpeg) => ffmpeg.add(image),
@@ -160,7 +160,7 @@ impl Video {
         added.map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Ends the video and gives it its name. False where it has no picture: then there is no file.
+    /// Ends the video and gives the file its name. Returns false if there was no picture and hence no file.
     pub(crate) fn finish(self) -> Result<bool> {
         let Some(mut ffmpeg) = self.ffmpeg else { return Ok(false) };
         ffmpeg.finish().map_err(|error| Error::file(&self.path, error))?;
@@ -171,10 +171,10 @@ impl Video {
     }
 }
 
-/// A running ffmpeg. Where it is dropped, it ends, and what it encoded goes.
+/// A running ffmpeg. Dropping it ends ffmpeg and deletes the encoded file.
 struct Ffmpeg {
     process: Child,
-    /// What ffmpeg writes: it goes back in the file to put the table of pictures before them, so no pipe will do.
+    /// The encoded file. ffmpeg goes back in it to put the table of pictures before them, so a pipe is not possible.
     encoded: NamedTempFile,
     messages: File,
 }
@@ -192,7 +192,7 @@ impl Ffmpeg {
             .args(["-s", &format!("{}x{}", image.width(), image.height())])
             .args(["-r", &rate_hz.to_string(), "-i", "-", "-an", "-c:v", encoder])
             .args(options)
-            // Players can go to each second.
+            // One key frame per second, so that players can jump to each second.
             .args(["-g", &rate_hz.ceil().to_string()])
             .args(["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"])
             .args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"])
@@ -202,7 +202,7 @@ impl Ffmpeg {
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(messages.try_clone()?);
-        // Ctrl-C is for this program, which then finishes the video.
+        // Ctrl-C ends this program's run; the program then finishes the video.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         #[cfg(windows)]
@@ -217,7 +217,7 @@ impl Ffmpeg {
         let written = self.process.stdin.as_mut().map(|stdin| stdin.write_all(image.as_raw()));
         match written {
             Some(Ok(())) => Ok(()),
-            // It closed its end: what it says is the reason.
+            // ffmpeg closed its input; its message gives the reason.
             Some(Err(error)) => self.finish().and(Err(error)),
             None => Err(std::io::Error::other("ffmpeg has ended")),
         }
@@ -241,13 +241,13 @@ impl Ffmpeg {
 
 impl Drop for Ffmpeg {
     fn drop(&mut self) {
-        // Neither does anything where it has ended.
+        // Both calls do nothing if it has ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
-/// The encoder that is used, with its options; or what is missing.
+/// The encoder to use with its options, or an error with what is missing.
 fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'static str> {
     static FOUND: OnceLock<std::result::Result<usize, &str>> = OnceLock::new();
     let find = || {
@@ -269,7 +269,7 @@ fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'s
     FOUND.get_or_init(find).map(|index| ENCODERS[index])
 }
 
-/// Checks that ffmpeg is there to encode videos; `given` is what asks for one.
+/// Checks that ffmpeg can encode videos; `given` is the option that needs it.
 pub(crate) fn check_ffmpeg(given: impl std::fmt::Display) -> Result<()> {
     encoder().map(drop).map_err(|missing| {
         Error::value("video", given, format!("{missing}; a GIF and frames need nothing more"))
@@ -283,7 +283,7 @@ mod tests {
 
     use super::*;
 
-    /// A legend has few of the pixels of a picture and most of its colours.
+    /// A legend has few of a picture's pixels but most of its colours.
     #[test]
     fn a_legend_of_colours_keeps_them_in_a_picture_of_any_size() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,7 +1,7 @@
 //! Slump: a laboratory for Contact Dynamics of cohesive grains.
 //!
-//! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics
-//! Algorithm* (2020, hal-02570097), "the paper" throughout. A pile and how far it slumps:
+//! "The paper" is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics Algorithm* (2020,
+//! hal-02570097). This program simulates its pile and prints the slump:
 //!
 //! ```
 //! let mut scene = slump::scene::built_in("pile")?;
@@ -12,23 +12,27 @@
 //! # Ok::<(), slump::error::Error>(())
 //! ```
 //!
-//! Programs start from a [`scene`] and step its [`sim::Simulation`]. A way to step, a contact law or a method
-//! of one's own is a [`sim::Advance`]; one problem by itself is shown by
-//! [`next_problem`](sim::Simulation::next_problem) to a [`sim::ProblemVisitor`], and solved by
-//! [`solver::solve`]. Three such programs are in `examples/`.
+//! Programs start from a [`scene`] and step its [`sim::Simulation`]. Your own stepper, contact law or method implements
+//! [`sim::Advance`]. [`next_problem`](sim::Simulation::next_problem) shows a single problem to a
+//! [`sim::ProblemVisitor`], and [`solver::solve`] solves it. The programs in `examples/` show how.
 //!
-//! Each module uses those before it: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`], which are
-//! of the crate `slump-core`, ← [`granular`] ← [`data`] ← [`interchange`], [`config`], of `slump-data`, ← `study`, of
-//! `slump-studies`, ← [`render`] ← the program, which is `headless`, the window (`app`, feature `window`) and `cli`. The
-//! compiler sees to the order of the crates, nothing but care to that within one. The physics knows no screen. Without the
-//! feature `gpu` pictures are drawn by the processor alone. The same from Python is a package of its own, in `python/`.
+//! Each module uses those before it:
+//!
+//! * `slump-core`: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`]
+//! * `slump-data`: [`granular`] ← [`data`] ← [`interchange`], [`config`]
+//! * `slump-studies`: `study`
+//! * this crate: [`render`] ← the program, which consists of `headless`, the window (`app`, feature `window`) and `cli`
+//!
+//! The compiler ensures the order of the crates, and a test ensures that imports between modules point one way. The
+//! physics does not depend on a screen. Without the feature `gpu` the processor draws all pictures. `python/` contains
+//! the Python package.
 
 #![cfg_attr(
     target_arch = "wasm32",
     allow(dead_code, unused_imports, reason = "a page has neither files nor a command line")
 )]
 #![warn(missing_docs, unreachable_pub)]
-// They panic where a stream is closed or full: `output` has lines that do not.
+// These macros panic if a stream is closed or full; the functions of `output` do not.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub use slump_core::{contact, error, scene, setting, sim, solver, world};
@@ -39,18 +43,18 @@ pub use slump_studies as study;
 use slump_core::threads;
 use slump_data::output;
 
-/// The version, with the commit where it is known.
+/// The version, with the commit if it is known.
 const VERSION: &str = env!("SLUMP_VERSION");
 
-/// The programs of a page of the book.
+/// The doc tests of the page on Python and Rust.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/python-and-rust.md")]
 struct BookOnRust;
 
-/// A clock that a page has, too.
+/// A clock that also exists in a browser.
 #[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
-/// A clock that a page has, too.
+/// A clock that also exists in a browser.
 #[cfg(target_arch = "wasm32")]
 use web_time::Instant;
 
@@ -59,7 +63,7 @@ mod headless;
 pub mod live;
 pub mod render;
 
-// The program: public for `main.rs`, tests and benches of this package, and for nobody else.
+// The program. It is public only for `main.rs`, tests and benches of this package.
 #[cfg(feature = "panels")]
 #[doc(hidden)]
 pub mod app;

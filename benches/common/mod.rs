@@ -10,10 +10,10 @@ use slump::sim::Simulation;
 use slump::solver::{Approach, ProblemNumbers, SolverSettings, SpinningPlane, StepProblem};
 use slump::world::{Boundary, Grain, Parameters};
 
-/// d of the pile's scene, m.
+/// Mean diameter d of the pile scene, m.
 const DIAMETER: f64 = 5e-3;
 
-/// The simulation's next problem.
+/// The contact problem of the simulation's next step.
 pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProblem<SpinningPlane> {
     let (world, parameters) = (simulation.world(), simulation.parameters());
     let Parameters { time_step_secs, friction, restitution, cone, .. } = *parameters;
@@ -25,8 +25,8 @@ pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProble
     problem
 }
 
-/// `count` discs, settled in a box as wide as the pile is high, without cohesion. Their contacts
-/// are those of a pile; how they fell matters to no bench, so they fall quickly.
+/// `count` cohesionless discs, settled in a box as wide as the pile is high. Their contacts are like those of a pile.
+/// The benches do not depend on how the discs fell, so they fall quickly.
 pub fn settled(count: usize) -> Simulation {
     let columns = ((count as f64).sqrt() * 1.2).ceil() as usize;
     let spacing = 1.21 * DIAMETER;

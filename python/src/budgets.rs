@@ -1,4 +1,4 @@
-//! Error budgets: how much of a number the grains make, how much the law, and how much the method.
+//! Error budgets: how much of a result is due to the grains, the contact law and the solver.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -10,7 +10,8 @@ use crate::conversion::exception;
 use crate::options::{GivenOptions, all_names};
 use slump_studies::{BudgetOptions, made_budget};
 
-/// A budget as JSON. What it goes on from lies in `folder`; the options are those of a simulation.
+/// Computes a budget and returns it as JSON. A later call resumes from the files in `folder`. The options are those of
+/// a simulation.
 #[pyfunction]
 #[pyo3(signature = (quantities, folder, cost_secs, *, begin=None, end=None, within=None, **options))]
 #[expect(clippy::too_many_arguments, reason = "as Python's class gives them")]
@@ -38,7 +39,7 @@ pub(crate) fn _budget(
     let mut interrupted = None;
     let made = py.detach(|| {
         made_budget(&options, &folder, &folder.join("states"), |_| {
-            // Ctrl-C is heard between two stages.
+            // Ctrl-C is checked between two stages.
             match Python::attach(|py| py.check_signals()) {
                 Ok(()) => ControlFlow::Continue(()),
                 Err(error) => {

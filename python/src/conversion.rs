@@ -1,5 +1,5 @@
-//! What goes between Python and the program: lists and tables as numpy's arrays, nested data by way of JSON, and
-//! errors as exceptions of the same sentence.
+//! Conversion between Rust and Python: lists and tables as NumPy arrays, nested data through JSON, and errors as
+//! exceptions with the same message.
 
 use numpy::ndarray::Dimension;
 use numpy::{
@@ -15,7 +15,7 @@ use slump_core::error::Error;
 use slump_data::data::{Table, Values};
 use slump_data::granular::Fields;
 
-/// Classes of the package, which are made in Python.
+/// Exception classes that the package defines in Python.
 mod classes {
     pyo3::import_exception!(slump._errors, Error);
     pyo3::import_exception!(slump._errors, FileError);
@@ -25,7 +25,7 @@ mod classes {
 }
 pub(crate) use classes::{InputError, SlumpWarning};
 
-/// The exception for an error.
+/// Python exception for an error.
 pub(crate) fn exception(error: Error) -> PyErr {
     let sentence = error.to_string();
     match error {
@@ -38,7 +38,7 @@ pub(crate) fn exception(error: Error) -> PyErr {
     }
 }
 
-/// The exception for a value that is none of those allowed.
+/// Exception for a value that is not allowed.
 pub(crate) fn refused(
     field: impl Into<String>,
     value: impl std::fmt::Display,
@@ -47,7 +47,7 @@ pub(crate) fn refused(
     exception(Error::value(field, value, allowed))
 }
 
-/// An array that nobody writes to in vain: it is a copy.
+/// Marks an array as read-only: it is a copy, so writing to it would have no effect on the simulation.
 fn read_only<T: Element, D: Dimension>(
     array: Bound<'_, PyArray<T, D>>,
 ) -> Bound<'_, PyArray<T, D>> {
@@ -55,7 +55,7 @@ fn read_only<T: Element, D: Dimension>(
     array
 }
 
-/// Rows of `N` numbers, one below the other.
+/// A two-dimensional array from rows of `N` numbers.
 pub(crate) fn rows<const N: usize>(
     py: Python<'_>,
     rows: impl ExactSizeIterator<Item = [f64; N]>,
@@ -64,8 +64,8 @@ pub(crate) fn rows<const N: usize>(
     rows.flatten().collect::<Vec<_>>().into_pyarray(py).reshape(shape).map(read_only)
 }
 
-/// An array of numbers, of anything that numpy makes an array of. Words, complex numbers and masked arrays are refused:
-/// numpy would drop a part of them.
+/// Converts anything that NumPy accepts to an array of numbers. Refuses words, complex numbers and masked arrays,
+/// because NumPy would drop a part of them.
 pub(crate) fn numbers<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let numpy = given.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (given,))?;
@@ -77,7 +77,7 @@ pub(crate) fn numbers<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArra
     array.call_method1("astype", ("float64",))?.extract()
 }
 
-/// The vectors of an array that a user gives, one row of two numbers per grain.
+/// Converts an array with one row of two numbers per grain to vectors.
 pub(crate) fn vectors<V: From<[f64; 2]>>(
     name: &str,
     given: &Bound<'_, PyAny>,
@@ -113,7 +113,7 @@ pub(crate) fn fields_of<'py>(py: Python<'py>, fields: &Fields) -> PyResult<Bound
     let stresses =
         [("kinetic_stress", &fields.kinetic_stress), ("contact_stress", &fields.contact_stress)];
     for (name, stresses) in stresses {
-        // By rows, as numpy has it.
+        // In row-major order, as NumPy expects.
         let numbers: Vec<f64> =
             stresses.iter().flat_map(|stress| stress.transpose().to_cols_array()).collect();
         let array = numbers.into_pyarray(py).reshape([lines, columns, 2, 2])?;
@@ -139,7 +139,7 @@ pub(crate) fn columns<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py,
     Ok(dict)
 }
 
-/// The first row of a table by the names of its columns, in numbers and words of Python's own.
+/// The first row of a table as a dictionary from column names to Python numbers and words.
 pub(crate) fn first_row<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py, PyDict>> {
     let dict = columns(py, table)?;
     for (name, column) in dict.copy()? {
@@ -148,8 +148,7 @@ pub(crate) fn first_row<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'p
     Ok(dict)
 }
 
-/// A column as an array of one type, whatever its values: a number that a row does not have is no number, a switch
-/// that it does not have is off.
+/// A column as an array of a single type. A missing number is NaN; a missing flag is false.
 fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
     Ok(match values {
         Values::Numbers(numbers) => list(py, numbers.into_iter()).into_any(),
@@ -169,7 +168,7 @@ fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
     })
 }
 
-/// The text of a dictionary. Arrays and numbers of numpy's may be in it.
+/// The JSON text of a dictionary, which may contain NumPy arrays and numbers.
 pub(crate) fn text_of(what: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
     let py = data.py();
     let options = PyDict::new(py);
@@ -183,12 +182,12 @@ pub(crate) fn text_of(what: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
     text.extract()
 }
 
-/// What a text says, in dictionaries, lists, numbers and words.
+/// Parses JSON into dictionaries, lists, numbers and words.
 pub(crate) fn parsed<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (text,))
 }
 
-/// Data of the program, in dictionaries, lists, numbers and words.
+/// Converts serialisable data to dictionaries, lists, numbers and words.
 pub(crate) fn data_of<'py>(py: Python<'py>, data: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(data).map_err(|error| {
         PyRuntimeError::new_err(format!("the program's own data are no JSON: {error}"))

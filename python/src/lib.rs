@@ -1,5 +1,5 @@
-//! The part of the Python package `slump` that is compiled: a simulation as a class, problems solved alone,
-//! and what there is to choose from. What a user sees of it is told in `slump/_slump.pyi`.
+//! The compiled part of the Python package `slump`: the class of a simulation, functions that solve single contact
+//! problems, and lists of the available scenes, solvers and options. `slump/_slump.pyi` describes its interface.
 
 #![warn(unreachable_pub)]
 

@@ -1,5 +1,5 @@
-//! Keyword arguments as the options of the command line that they are: the same names with underscores, the same
-//! parser, the same sentences; and what there is to choose from, each with one line.
+//! Keyword arguments as options of the command line: the same names with underscores, the same parser and the same
+//! messages. Also the lists of available scenes, steppers, methods and options.
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -12,12 +12,12 @@ use slump_core::sim::{Settings, Stepper};
 use slump_core::solver::METHODS;
 use slump_data::config::Config;
 
-/// What is given of options, by their names on the command line.
+/// The given options, as pairs of a command-line name and a value.
 #[derive(Default)]
 pub(crate) struct GivenOptions(Vec<(String, String)>);
 
 impl GivenOptions {
-    /// Adds keyword arguments, of which only those in `allowed` may be given.
+    /// Adds keyword arguments. Names that are not in `allowed` are refused.
     pub(crate) fn add_all(
         &mut self,
         keywords: Option<&Bound<'_, PyDict>>,
@@ -35,7 +35,7 @@ impl GivenOptions {
         Ok(())
     }
 
-    /// Adds one more, unless its value is none.
+    /// Adds an option, unless its value is `None`.
     pub(crate) fn add(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         if !value.is_none() {
             self.0.push((name.replace('_', "-"), text_of(name, value)?));
@@ -43,22 +43,22 @@ impl GivenOptions {
         Ok(())
     }
 
-    /// Adds one more as the command line has it.
+    /// Adds an option with a value in the form of the command line.
     pub(crate) fn add_text(&mut self, name: &str, text: &str) {
         self.0.push((name.into(), text.into()));
     }
 
-    /// What the command line makes of them.
+    /// Parses the options as the command line does.
     pub(crate) fn config(&self) -> PyResult<Config> {
         let pairs = self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         Config::of_options(pairs).map_err(exception)
     }
 }
 
-/// A value as it would stand on the command line.
+/// A value in the form of the command line.
 fn text_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     if value.hasattr("dtype")? && value.getattr("size")?.extract::<usize>().ok() == Some(1) {
-        // Numbers of numpy's are arrays of one.
+        // NumPy numbers are arrays with one element.
         return text_of(name, &value.call_method0("item")?);
     }
     if let Ok(switch) = value.cast::<PyBool>() {
@@ -78,7 +78,7 @@ fn text_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     })
 }
 
-/// The name of an option as a keyword.
+/// The keyword for an option's name.
 pub(crate) fn keyword(name: &str) -> String {
     name.replace('-', "_")
 }
@@ -88,7 +88,7 @@ pub(crate) fn all_names() -> Vec<String> {
     Config::names().iter().map(|name| keyword(name)).collect()
 }
 
-/// The names of those that can be changed while a simulation runs.
+/// The names of all options that can be changed while a simulation runs.
 pub(crate) fn setting_names() -> Vec<String> {
     Settings::about().map(|about| keyword(about.name)).collect()
 }
@@ -120,31 +120,31 @@ fn lines<'py>(
     Ok(found)
 }
 
-/// The built-in scenes, each with one line.
+/// The built-in scenes, each with a one-line description.
 #[pyfunction]
 pub(crate) fn scenes(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, SCENES.iter().map(|scene| (scene.name.into(), scene.summary)))
 }
 
-/// The steppers, each with one line.
+/// The steppers, each with a one-line description.
 #[pyfunction]
 pub(crate) fn steppers(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, Stepper::ALL.iter().map(|stepper| (stepper.name().into(), stepper.hint())))
 }
 
-/// The methods that solve a step's problem, each with one line.
+/// The solvers (values of `solver`), each with a one-line description.
 #[pyfunction]
 pub(crate) fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, METHODS.iter().map(|method| (method.name.into(), method.summary)))
 }
 
-/// The options of a simulation, each with the line that the command line's help has for it.
+/// The options of a simulation, each with its line in the help of the command line.
 #[pyfunction]
 pub(crate) fn options(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, Config::options().into_iter().map(|(name, help)| (keyword(&name), help)))
 }
 
-/// What the values of each setting are: float, int, bool, or a tuple of words.
+/// The type of each setting: float, int, bool, or a tuple of the allowed words.
 #[pyfunction]
 pub(crate) fn _kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let found = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! The contact problem of one step, solved alone.
+//! Solution of single contact problems, outside a simulation.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
@@ -15,11 +15,11 @@ use slump_data::interchange::{
     FoundSolution, ProblemFile, Solution, solutions_of_file, solve_file,
 };
 
-/// Between two looks for Ctrl-C.
+/// Interval between two checks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Solves a contact problem: a dictionary, as of `Simulation.next_problem`, its JSON, or a file of it or of
-/// Siconos'. What Ctrl-C leaves undone goes on in the background.
+/// Solves a contact problem: a dictionary in the form of `Simulation.next_problem`, its JSON, or the path of a file in
+/// that format or in the format of Siconos. After Ctrl-C the unfinished work continues in the background.
 #[pyfunction]
 #[pyo3(signature = (problem, method="auto", tolerance=1e-8, max_sweeps=1_000_000, repeat=1, without_bodies=false))]
 pub(crate) fn solve<'py>(
@@ -44,8 +44,8 @@ pub(crate) fn solve<'py>(
     as_python(py, solution.map_err(exception)?)
 }
 
-/// Looks for the solutions that a contact problem has under Coulomb's law, from several starts. What Ctrl-C
-/// leaves undone continues in the background.
+/// Looks for the solutions of a contact problem under Coulomb's law, from several initial guesses. After Ctrl-C the
+/// unfinished work continues in the background.
 #[pyfunction]
 #[pyo3(signature = (problem, starts=8, tolerance=1e-8, max_sweeps=1_000_000))]
 pub(crate) fn solutions<'py>(
@@ -73,7 +73,7 @@ fn method_of(name: &str) -> PyResult<Method> {
 fn problem_of(problem: &Bound<'_, PyAny>) -> PyResult<ProblemFile> {
     let parsed = if let Ok(text) = problem.cast::<PyString>() {
         let text = text.to_string();
-        // A path is one line and no object.
+        // A path is a single line and does not begin with a brace.
         if text.trim_start().starts_with('{') || text.contains('\n') {
             ProblemFile::parse(&text)
         } else {
@@ -88,13 +88,13 @@ fn problem_of(problem: &Bound<'_, PyAny>) -> PyResult<ProblemFile> {
     parsed.map_err(exception)
 }
 
-/// Work on a thread of its own, while this one looks for Ctrl-C.
+/// Does the work on a separate thread, while this thread checks for Ctrl-C.
 fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
     let (sender, mut receiver) = channel();
-    // Nobody listens any more after Ctrl-C.
+    // After Ctrl-C there is no receiver any more.
     let worker = thread::Builder::new().spawn(move || drop(sender.send(work())));
     worker.map_err(|error| PyOSError::new_err(error.to_string()))?;
     loop {

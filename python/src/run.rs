@@ -1,4 +1,4 @@
-//! A simulation with what is kept of its steps.
+//! A simulation together with its history, pair sums and recording.
 
 use std::path::{Path, PathBuf};
 use std::process;
@@ -11,55 +11,55 @@ use slump_data::config::SavedState;
 use slump_data::config::scene_facts;
 use slump_data::data::{DataSettings, FrameSchedule, Recording, Times, formats_of};
 
-/// How long steps are taken before someone looks for Ctrl-C. Longer is felt when it is pressed; shorter costs
-/// more looks, each of which waits for Python's lock.
+/// Time for which steps are taken between two checks for Ctrl-C. If it is longer, Ctrl-C reacts noticeably late. If it
+/// is shorter, more time is lost in checks, each of which waits for Python's lock.
 const SLICE: Duration = Duration::from_millis(20);
 
 /// A run of a scene.
 pub(crate) struct Run {
-    /// The scene as it began.
+    /// The scene with which the run began.
     pub scene: Scene,
-    /// The run itself.
+    /// The simulation.
     pub simulation: Simulation,
-    /// A row a step, since the start or since they were last forgotten.
+    /// Observables, one row per step since the start or since the history was last deleted.
     pub rows: Vec<Observables>,
-    /// What pairs transmitted since that was begun, if it was.
+    /// Sums of the forces of pairs, once `begin_pairs` was called.
     pub sums: Option<ForceSums>,
-    /// Sums over all of its steps.
+    /// Sums over all steps of the run.
     tally: Tally,
-    /// Where it is recorded, if it is, and the process that began to record it.
+    /// The recording, if there is one, and the process that started it.
     recording: Option<(u32, Recording)>,
-    /// How many alarms have been told of.
+    /// Number of alarms that were already reported.
     alarms_told: usize,
 }
 
-/// Steps that were taken one after the other.
+/// Result of taking several steps.
 pub(crate) struct Taken {
-    /// Their number.
+    /// Number of steps.
     pub steps: u64,
     /// True if a schedule is due at the last step.
     pub is_due: bool,
-    /// The error that ended them, if one did.
+    /// The error that stopped the run, if any.
     pub ended: Result<()>,
 }
 
 impl Run {
-    /// A run at its start.
+    /// Starts a run of a scene.
     pub(crate) fn start(scene: Scene) -> Result<Self> {
         let simulation = scene.simulation()?;
         Ok(Self::of(SavedState::new(scene, simulation, Tally::default())))
     }
 
-    /// A run that goes on from a saved state.
+    /// Resumes a run from a saved state.
     pub(crate) fn of(state: SavedState) -> Self {
         let SavedState { scene, simulation, tally, .. } = state;
-        // Who saved it has been told of these.
+        // These alarms were reported before the state was saved.
         let alarms_told = simulation.alarms().len();
         let (rows, sums) = (Vec::new(), None);
         Self { scene, simulation, rows, sums, tally, recording: None, alarms_told }
     }
 
-    /// All of it as it is now, but for the rows of its steps.
+    /// The complete present state, without the history of the steps.
     pub(crate) fn saved(&self) -> Result<SavedState> {
         self.check_finite("finite where it is saved")?;
         Ok(SavedState::new(self.scene.clone(), self.simulation.clone(), self.tally))
@@ -72,7 +72,7 @@ impl Run {
         error::check(self.simulation.alarms().iter().all(is_finite), "state", found, allowed)
     }
 
-    /// A second one, which goes on as this one would, but is not recorded.
+    /// A second run in the same state, without the recording.
     pub(crate) fn copy(&self) -> Self {
         Self {
             scene: self.scene.clone(),
@@ -85,21 +85,21 @@ impl Run {
         }
     }
 
-    /// Begins to sum up what pairs transmit.
+    /// Starts to sum the forces of pairs.
     pub(crate) fn begin_pairs(&mut self) {
         let mut sums = ForceSums::default();
         sums.follow(&self.simulation);
         self.sums = Some(sums);
     }
 
-    /// Has sums of pairs begin again if bodies have other numbers now.
+    /// Restarts the sums of pairs if bodies have been renumbered.
     pub(crate) fn edited(&mut self) {
         if let Some(sums) = &mut self.sums {
             sums.follow(&self.simulation);
         }
     }
 
-    /// Records it from its present state on.
+    /// Starts a recording from the present state on.
     pub(crate) fn record(
         &mut self,
         folder: &Path,
@@ -118,13 +118,13 @@ impl Run {
         Ok(())
     }
 
-    /// Ends its recording, if there is one.
+    /// Ends the recording, if there is one.
     pub(crate) fn end_recording(&mut self) -> Result<()> {
         self.leave_recording_to_parent();
         self.recording.take().map_or(Ok(()), |(_, recording)| recording.finish())
     }
 
-    /// The folder that it is recorded in, if it is.
+    /// The folder of the recording, if there is one.
     pub(crate) fn recording_folder(&mut self) -> Option<PathBuf> {
         self.leave_recording_to_parent();
         self.recording.as_ref().map(|(_, recording)| recording.folder().to_owned())
@@ -138,7 +138,7 @@ impl Run {
         }
     }
 
-    /// Takes steps for a while, at most `most`, and none after a step at which `schedule` is due.
+    /// Takes steps for the time of a slice, at most `most` steps, and stops after a step at which `schedule` is due.
     pub(crate) fn take(&mut self, most: u64, mut schedule: Option<&mut FrameSchedule>) -> Taken {
         let start = Instant::now();
         let mut taken = Taken { steps: 0, is_due: false, ended: Ok(()) };
@@ -156,8 +156,8 @@ impl Run {
         taken
     }
 
-    /// Keeps what a step measured, and records its state unless it blew up; the row of one that did is one
-    /// of them, as in `observables.csv`.
+    /// Adds the observables of a step to the history and the recording, and records its state if it is finite. As in
+    /// `observables.csv`, a step with a state that is not finite also gets a row.
     fn take_down(&mut self, is_finite: bool) -> Result<()> {
         let row = *self.simulation.observables();
         self.rows.push(row);
@@ -177,13 +177,13 @@ impl Run {
         taken
     }
 
-    /// What went wrong so far, one sentence of a kind.
+    /// All alarms so far, one sentence for each kind.
     pub(crate) fn alarms(&self) -> Vec<String> {
         let settings = self.simulation.settings();
         self.simulation.alarms().iter().map(|alarm| alarm.message(settings)).collect()
     }
 
-    /// What went wrong since the last call: its kind, and a sentence.
+    /// Alarms since the last call, each with its kind and a sentence.
     pub(crate) fn new_alarms(&mut self) -> Vec<(AlarmKind, String)> {
         let settings = self.simulation.settings();
         let new = self.simulation.alarms().iter().skip(self.alarms_told);
@@ -195,8 +195,7 @@ impl Run {
 
 impl Drop for Run {
     fn drop(&mut self) {
-        // The rows that wait are written where nobody ended the recording; whoever wants to know what went
-        // wrong ends it.
+        // Writes the waiting rows if the recording was not ended. Errors are dropped; call `end_recording` to see them.
         let _ = self.end_recording();
     }
 }

@@ -1,4 +1,4 @@
-//! The class of a simulation: how it is made, stepped, changed and looked at.
+//! The Python class of a simulation: construction, steps, changes, recordings and grid fields.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -19,36 +19,36 @@ use slump_data::data::{DataSettings, FormatName};
 use slump_data::granular::Fields;
 use slump_data::interchange::problem_file_of;
 
-/// A scene in motion.
+/// A simulation of a scene, advanced step by step.
 ///
 /// Parameters
 /// ----------
 /// scene
-///     Name of a built-in scene (`slump.scenes()`; the pile where none is given), path of a scene file (TOML), or
-///     a dictionary as of `slump.scene()`.
+///     Name of a built-in scene (`slump.scenes()` lists them; default: the pile), path of a scene file (TOML), or a
+///     dictionary in the form of `slump.scene()`.
 /// initial
-///     What a pile starts from instead: path of a file of discs, or a dictionary or data frame with columns `x`,
-///     `y`, `radius` (m) and, where the grains move, `vx`, `vy` (m/s), `omega` (rad/s), such as `grains` of another
-///     simulation; or a recording, of whose moments `initial_step` chooses one (else the last); or a saved run,
-///     which begins anew with its grains and its scene.
+///     Initial state of a pile: path of a file of discs; a dictionary or data frame with columns `x`, `y`, `radius`
+///     (m) and, if the grains move, `vx`, `vy` (m/s), `omega` (rad/s), such as `grains` of another simulation; a
+///     recording, from which `initial_step` chooses a moment (default: the last); or a saved run, whose scene then
+///     starts again with the saved grains.
 /// restart
-///     Path of a saved run to go on with, bit for bit, where no other scene or start is given. Options change it
-///     from there on.
+///     Path of a saved run to resume, bit for bit. It excludes `scene` and `initial`. Options change the run from
+///     there on.
 /// **options
-///     Those of the command line, with underscores: `bond`, `dt`, `stepper`, `solver`, `grains`, `seed`, …
+///     Options of the command line, with underscores: `bond`, `dt`, `stepper`, `solver`, `grains`, `seed`, …
 ///     `slump.options()` lists them.
 ///
-/// Every setting (`bond`, `dt`, …) is an attribute, to be read and, from the next step on, changed. The same
-/// options give bit for bit the trajectory of the command line. Arrays are copies that cannot be written to:
-/// they stay as they are while the simulation goes on. Several threads may use one simulation, and many simulations run in parallel on
-/// threads: steps are taken without Python's lock.
+/// Every setting (`bond`, `dt`, …) is an attribute that you can read and change. A change takes effect at the next
+/// step. The same options give the trajectory of the command line, bit for bit. Arrays are read-only copies: they do
+/// not change while the simulation continues. Several threads may use one simulation, and many simulations run in
+/// parallel on threads, because steps are taken without Python's lock.
 ///
 /// Raises
 /// ------
 /// slump.InputError
-///     Names the first value that is not allowed, and what is.
+///     If a value is not allowed. The message names the first such value and the allowed values.
 /// slump.FileError
-///     Names the file that cannot be read.
+///     If a file cannot be read. The message names the file.
 #[pyclass(module = "slump", subclass, frozen)]
 pub(crate) struct Simulation {
     run: Mutex<Run>,
@@ -59,9 +59,9 @@ impl Simulation {
         Self { run: Mutex::new(run) }
     }
 
-    /// The run, for a thread that has no lock of Python's.
+    /// Locks the run, for a thread that does not have Python's lock.
     pub(crate) fn locked(&self) -> MutexGuard<'_, Run> {
-        // A step that panicked has been told of; what it left can still be looked at.
+        // After a panic in a step, which was reported, the state can still be inspected.
         self.run.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -74,13 +74,13 @@ impl Simulation {
         self.run(py).simulation.world().grains.len()
     }
 
-    /// What went wrong since the last call: its kind, and a sentence.
+    /// Alarms since the last call, each with its kind and a sentence.
     pub(crate) fn new_alarms(&self, py: Python<'_>) -> Vec<(AlarmKind, String)> {
         self.run(py).new_alarms()
     }
 }
 
-/// The simulation that a pickle holds.
+/// Restores the simulation from the bytes in a pickle.
 #[pyfunction]
 pub(crate) fn _restored(py: Python<'_>, saved: Vec<u8>) -> PyResult<Simulation> {
     let state = py.detach(|| SavedState::from_bytes(&saved, "pickle"));
@@ -112,16 +112,16 @@ impl Simulation {
         Run::start(scene).map(Self::of).map_err(exception)
     }
 
-    /// Takes `steps` steps. After each of them `callback` is called with the simulation.
+    /// Takes `steps` steps and calls `callback` with the simulation after each step.
     ///
-    /// Other threads run meanwhile. Ctrl-C ends it after the step that it is in, as an exception of the
-    /// callback does; all steps until then are taken, and the simulation can go on. What goes wrong without
-    /// ending it is told of in a `SlumpWarning`.
+    /// Other threads run meanwhile. Ctrl-C, or an exception in the callback, stops the run after the current step. The
+    /// steps taken until then are kept, and the simulation can continue. Problems that do not stop the run raise a
+    /// `SlumpWarning`.
     ///
     /// Raises
     /// ------
     /// slump.NotFiniteError
-    ///     Where a position or velocity is no longer a number.
+    ///     If a position or velocity is no longer finite.
     #[pyo3(signature = (steps=1, callback=None))]
     fn step(
         this: &Bound<'_, Self>,
@@ -133,12 +133,12 @@ impl Simulation {
         stepping::take_steps(this, count, callback, None)
     }
 
-    /// Takes the steps that are left until a simulated time, `run(until=0.2)` (s), or without one until the scene's
-    /// `duration`. To run for 0.2 s, write `run(until=sim.time + 0.2)`.
+    /// Runs until a simulated time, `run(until=0.2)` (s), or without `until` up to the scene's `duration`. To run for
+    /// 0.2 s, write `run(until=sim.time + 0.2)`.
     ///
-    /// `callback` is called with the simulation each `every` seconds of simulated time, after the steps at which
-    /// `record` with the same `every` takes frames; without `every` it is called after each step. All else is as in
-    /// `step`.
+    /// `callback` is called with the simulation every `every` seconds of simulated time, after the steps at which
+    /// `record` with the same `every` takes frames. Without `every` it is called after each step. Interruption and
+    /// warnings are as in `step`.
     #[pyo3(
         name = "run",
         signature = (*times, until=None, callback=None, every=None),
@@ -173,7 +173,7 @@ impl Simulation {
         stepping::take_steps(this, steps, callback, schedule)
     }
 
-    /// Changes settings from the next step on: all that are given, or none.
+    /// Changes settings from the next step on. If one of them is not allowed, none is changed.
     #[pyo3(signature = (**settings))]
     fn change(&self, py: Python<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         let mut given = options::GivenOptions::default();
@@ -185,14 +185,14 @@ impl Simulation {
         run.simulation.change(settings).map_err(exception)
     }
 
-    /// All settings, as the next step will be taken.
+    /// All settings for the next step.
     #[getter]
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let settings = *self.run(py).simulation.settings();
         options::settings(py, &settings)
     }
 
-    /// A second simulation, which goes on as this one would.
+    /// A second, independent simulation in the same state; both continue in the same way.
     fn copy(&self, py: Python<'_>) -> Self {
         Self::of(self.run(py).copy())
     }
@@ -205,20 +205,20 @@ impl Simulation {
         self.copy(py)
     }
 
-    /// Saves the run to a file, which is there as a whole or not at all: `Simulation(restart=path)` goes on with
-    /// it bit for bit, as `--restart` of the command line does, and `Simulation(initial=path)` begins with its
-    /// grains. Files are read by the version that wrote them, and by no other.
+    /// Saves the run to a file. The file is written completely or not at all. `Simulation(restart=path)` resumes it bit
+    /// for bit, as `--restart` of the command line does, and `Simulation(initial=path)` starts again with its grains.
+    /// Only the version that wrote a file can read it.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.locked().saved()?.save(&path)).map_err(exception)
     }
 
-    /// Records from now on into a folder, as `--data` of the command line does: what each step measures, and all
-    /// grains and contacts each `every` seconds of simulated time. A recording that it had before ends.
+    /// Starts recording into a folder, as `--data` of the command line does: the measurements of each step, and all
+    /// grains and contacts every `every` seconds of simulated time. An earlier recording of this simulation ends.
     ///
-    /// `formats` are some of parquet (where nothing is said), csv, vtk, ovito and fields. An earlier recording in the
-    /// folder is refused unless `overwrite` removes it. Files are written on a thread of their own; where that
-    /// fails, the recording ends, and a later step, or `end_recording`, says why. Copies, pickles and forked processes
-    /// are not recorded.
+    /// `formats` is a list of parquet (the default), csv, vtk, ovito and fields. If the folder already contains a
+    /// recording, the call fails unless `overwrite` is true, which removes it. Files are written on a separate thread.
+    /// If that fails, the recording ends, and a later step or `end_recording` raises the error. Copies, pickles and
+    /// forked processes are not recorded.
     #[pyo3(signature = (folder, every=0.04, formats=None, overwrite=false))]
     fn record(
         &self,
@@ -239,24 +239,24 @@ impl Simulation {
         recorded.map_err(exception)
     }
 
-    /// Ends the recording, if there is one, and waits until all of it is written. So does whatever ends the
-    /// simulation, but does not say what went wrong.
+    /// Ends the recording, if there is one, and waits until it is written. A simulation that is deleted also ends its
+    /// recording, but does not report errors.
     fn end_recording(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| self.locked().end_recording()).map_err(exception)
     }
 
-    /// The contact problem of the next step, as data that `solve` takes.
+    /// The contact problem of the next step, as data that `solve` accepts.
     fn next_problem<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let problem = problem_file_of(&self.run(py).simulation).map_err(exception)?;
         parsed(py, &problem.text())
     }
 
-    /// Forgets the rows of the steps so far.
+    /// Deletes the history of the steps so far.
     fn forget_history(&self, py: Python<'_>) {
         self.run(py).rows = Vec::new();
     }
 
-    /// What `save` writes goes into a pickle, so that a run goes on bit for bit in another process.
+    /// Pickles the bytes that `save` writes, so that another process resumes the run bit for bit.
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,
@@ -266,20 +266,21 @@ impl Simulation {
         Ok((restored, (PyBytes::new(py, &bytes),)))
     }
 
-    /// Sets the centres of all grains, m: a row a grain. Velocities stay, and so does what the last step measured.
+    /// Sets the centres of all grains, m, one row per grain. Velocities and the measurements of the last step do not
+    /// change.
     fn set_positions(&self, py: Python<'_>, positions: &Bound<'_, PyAny>) -> PyResult<()> {
         let positions: Vec<_> = vectors("positions", positions, self.count(py))?;
         self.run(py).simulation.set_positions(&positions).map_err(exception)
     }
 
-    /// Sets the velocities of all grains, m/s: a row a grain. What the last step measured stays.
+    /// Sets the velocities of all grains, m/s, one row per grain. The measurements of the last step do not change.
     fn set_velocities(&self, py: Python<'_>, velocities: &Bound<'_, PyAny>) -> PyResult<()> {
         let velocities: Vec<_> = vectors("velocities", velocities, self.count(py))?;
         self.run(py).simulation.set_velocities(&velocities).map_err(exception)
     }
 
-    /// Puts a grain in at x, y (m) with that radius (m) and velocity (m/s). It is the last one, has the density of the
-    /// others, and an `id` that no other body has had. There must be room for it.
+    /// Adds a grain at x, y (m) with this radius (m) and velocity (m/s). It becomes the last grain, has the density of
+    /// the other grains, and gets an `id` that no other body has had. The place must be free.
     #[pyo3(signature = (x, y, radius, vx=0.0, vy=0.0))]
     fn add_grain(
         &self,
@@ -297,8 +298,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes grain i out. The arrays of all grains lose its row; the `id` of every other grain in tables and recordings
-    /// stays.
+    /// Removes grain i. The arrays of all grains lose its row. Every other grain keeps its `id` in tables and
+    /// recordings.
     fn remove_grain(&self, py: Python<'_>, i: i64) -> PyResult<()> {
         let mut run = self.run(py);
         let count = run.simulation.world().grains.len();
@@ -309,8 +310,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// The force on each grain beside gravity, N, a row a grain: set as a whole, it acts from the next step on until it is set
-    /// anew. Its work is part of `gravity_work`. A run that is saved, copied or pickled keeps it; recordings do not have it.
+    /// Force on each grain in addition to gravity, N, one row per grain. Assign the whole array; the forces then act
+    /// from the next step on until you assign others. Their work is part of `gravity_work`. Saved runs, copies and
+    /// pickles keep the forces; recordings do not contain them.
     #[getter]
     fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let run = self.run(py);
@@ -326,17 +328,19 @@ impl Simulation {
         self.run(py).simulation.set_body_forces(&forces).map_err(exception)
     }
 
-    /// Begins to sum up what pairs transmit: from now on `pairs` has the means over all steps since. Steps then take longer.
+    /// Starts to sum the forces of all pairs. From now on `pairs` gives means over all steps since this call. Steps
+    /// then take longer.
     fn begin_pairs(&self, py: Python<'_>) {
         self.run(py).begin_pairs();
     }
 
-    /// Fields of density, velocity and stress on a grid, smoothed by `width` (m, the mean diameter where none is given), which
-    /// is the standard deviation along each axis (I. Goldhirsch, Granular Matter 12:239, 2010).
+    /// Fields of density, velocity and stress on a grid, smoothed with a kernel whose standard deviation along each
+    /// axis is `width` (m, default: the mean diameter; I. Goldhirsch, Granular Matter 12:239, 2010).
     ///
-    /// Arrays have a row for each of the heights `y`, a column for each `x` (centres of cells, m), then vectors and tensors:
-    /// `density` (kg/m²), `momentum` (kg/(m s)), `velocity` (m/s, NaN where nothing is), `kinetic_stress` and `contact_stress`
-    /// (N/m, compression positive). They are means over cells of half a width, so that sums over all cells are exact.
+    /// The first axis of an array runs over the heights `y`, the second over `x` (centres of cells, m), and any further
+    /// axes over the components of vectors and tensors: `density` (kg/m²), `momentum` (kg/(m s)), `velocity` (m/s, NaN
+    /// in empty cells), `kinetic_stress` and `contact_stress` (N/m, compression positive). Values are means over cells
+    /// of half a width, so that sums over all cells are exact.
     #[pyo3(signature = (width=None))]
     fn fields<'py>(&self, py: Python<'py>, width: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
         let (moment, diameter) = {

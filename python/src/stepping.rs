@@ -1,6 +1,6 @@
-//! Many steps in a row, without Python's lock: other threads run meanwhile, and Ctrl-C is heeded. And work after a fork:
-//! `multiprocessing` may fork this process, and the threads of a pool stay behind: whoever gives work to rayon's global
-//! pool in a child waits for ever. So a child has a pool of its own.
+//! Takes many steps without Python's lock, so that other threads run meanwhile, and checks for Ctrl-C. It also handles
+//! forks: `multiprocessing` may fork this process, but the threads of rayon's global pool do not exist in the child,
+//! and work given to that pool would wait for ever. A child therefore gets its own pool.
 
 use std::ffi::CString;
 use std::process;
@@ -16,17 +16,17 @@ use crate::simulation::Simulation;
 use slump_core::sim::AlarmKind;
 use slump_data::data::{DataSettings, FrameSchedule, Times};
 
-/// The process that loaded this module.
+/// Id of the process that loaded this module.
 static LOADED_IN: OnceLock<u32> = OnceLock::new();
-/// The pool of a forked process.
+/// Thread pool of a forked process, with the process id.
 static FORKED: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// Remembers which process has the global pool.
+/// Remembers the process that owns the global pool.
 pub(crate) fn remember_this_process() {
     LOADED_IN.get_or_init(process::id);
 }
 
-/// Does work that may be shared out to threads.
+/// Does work that may use several threads.
 pub(crate) fn shared_out<T: Send>(
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, ThreadPoolBuildError> {
@@ -39,7 +39,7 @@ pub(crate) fn shared_out<T: Send>(
         Some((owner, pool)) if *owner == this => Arc::clone(pool),
         _ => {
             let pool = Arc::new(ThreadPoolBuilder::new().build()?);
-            // That of the parent has no threads here; ending it would wait for them.
+            // The parent's pool has no threads in this process; dropping it would wait for them.
             std::mem::forget(forked.replace((this, Arc::clone(&pool))));
             pool
         }
@@ -48,8 +48,8 @@ pub(crate) fn shared_out<T: Send>(
     Ok(pool.install(work))
 }
 
-/// The schedule of a callback: after the steps at which a recording with the same `every` (s) has frames, or, without
-/// it, after each step.
+/// The schedule of a callback: the steps at which a recording with the same `every` (s) takes frames, or each step
+/// without `every`.
 pub(crate) fn schedule_of(
     simulation: &Bound<'_, Simulation>,
     callback: Option<&Bound<'_, PyAny>>,
@@ -62,12 +62,13 @@ pub(crate) fn schedule_of(
     let settings = DataSettings { every_secs: every, ..DataSettings::default() };
     settings.validate("every").map_err(exception)?;
     let mut schedule = FrameSchedule::new(Times::of(&settings));
-    // A recording has a frame of the present state, but a callback is called after steps only.
+    // A recording takes a frame of the present state, but a callback is called only after steps.
     schedule.is_due(&simulation.get().run(simulation.py()).simulation);
     Ok(Some(schedule))
 }
 
-/// Takes `steps` steps, and calls `callback` with the simulation after those that `schedule` names, or after each.
+/// Takes `steps` steps and calls `callback` with the simulation after each step at which `schedule` is due, or after
+/// each step.
 pub(crate) fn take_steps(
     simulation: &Bound<'_, Simulation>,
     steps: u64,
@@ -93,7 +94,7 @@ pub(crate) fn take_steps(
     Ok(())
 }
 
-/// Takes steps for a while.
+/// Takes steps for the time of one slice.
 fn take(
     simulation: &Bound<'_, Simulation>,
     most: u64,
@@ -104,12 +105,12 @@ fn take(
     done.map_err(|error| PyOSError::new_err(error.to_string()))
 }
 
-/// Warns of what went wrong since the last look. A state that is no longer finite is an exception of its own.
+/// Raises a Python warning for each new alarm, and an exception if the state is no longer finite.
 fn warn_of_alarms(simulation: &Bound<'_, Simulation>) -> PyResult<()> {
     let py = simulation.py();
     for (kind, message) in simulation.get().new_alarms(py) {
         if kind != AlarmKind::NotFinite {
-            // A sentence of the program has no zero in it.
+            // A message of the program contains no zero byte.
             let message = CString::new(message).unwrap_or_default();
             PyErr::warn(py, &py.get_type::<SlumpWarning>(), &message, 1)?;
         }

@@ -1,4 +1,4 @@
-//! What a simulation shows of itself. Arrays are copies, and read-only.
+//! Read-only views of a simulation. Arrays are read-only copies.
 
 use std::path::PathBuf;
 
@@ -12,21 +12,21 @@ use slump_data::data::Table;
 
 #[pymethods]
 impl Simulation {
-    /// What the last step measured, or the initial state.
+    /// Measurements of the last step, or of the initial state.
     #[getter]
     fn observables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let row = *self.run(py).simulation.observables();
         first_row(py, Table::of_steps(&[row]))
     }
 
-    /// What all steps measured, a row each.
+    /// Measurements of all steps, one row per step.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = self.run(py).rows.clone();
         columns(py, Table::of_steps(&rows))
     }
 
-    /// The grains, then the fixed discs, as a table.
+    /// The grains, followed by the fixed discs, as a table.
     #[getter]
     fn grains<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
@@ -40,15 +40,15 @@ impl Simulation {
         columns(py, Table::of_contacts(&moment))
     }
 
-    /// What no grain moves, each as the body that it goes as: place, velocity, force, torque and work, as a table.
+    /// Walls and fixed discs, one row per rigid body: position, velocity, force, torque and work, as a table.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         columns(py, Table::of_walls(&moment))
     }
 
-    /// All pairs that have transmitted anything since `begin_pairs()`, parted or not: N, T and force, means over that time, as a
-    /// table.
+    /// All pairs that have transmitted a force since `begin_pairs()`, including pairs that have separated: means of N,
+    /// T and force over that time, as a table.
     #[getter]
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let run = self.run(py);
@@ -58,14 +58,14 @@ impl Simulation {
         columns(py, Table::of_pairs(sums, &run.simulation.moment()))
     }
 
-    /// What is measured of the whole pile: stress, fabric, coordination, solid fraction, forces, clusters.
+    /// Measures of the whole pile: stress, fabric, coordination, solid fraction, forces, clusters.
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         first_row(py, py.detach(|| Table::of_measures(&moment)))
     }
 
-    /// Histograms of forces, directions, contacts and overlaps, a row a bin, as a table.
+    /// Histograms of forces, directions, contacts and overlaps, one row per bin, as a table.
     #[getter]
     fn histograms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
@@ -93,7 +93,7 @@ impl Simulation {
         rows(py, run.simulation.world().grains.velocities.iter().map(|&speed| speed.into()))
     }
 
-    /// Angles that the grains have turned since the start, rad.
+    /// Angles by which the grains have turned since the start, rad.
     #[getter]
     fn angles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         list(py, self.run(py).simulation.world().grains.angles.iter().copied())
@@ -117,20 +117,20 @@ impl Simulation {
         list(py, self.run(py).simulation.world().grains.masses.iter().copied())
     }
 
-    /// The boundaries where they are now, as scene files say them.
+    /// The boundaries in their present positions, in the form of scene files.
     #[getter]
     fn boundaries<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let boundaries = self.run(py).simulation.world().boundaries.clone();
         data_of(py, &boundaries)
     }
 
-    /// What went wrong so far, one sentence of a kind.
+    /// The alarms so far, one sentence for each kind.
     #[getter]
     fn alarms(&self, py: Python<'_>) -> Vec<String> {
         self.run(py).alarms()
     }
 
-    /// The folder that it is recorded in, if it is; a forked process does not record the simulations of its parent.
+    /// The folder of the recording, or `None`. A forked process does not record the simulations of its parent.
     #[getter]
     fn recording(&self, py: Python<'_>) -> Option<PathBuf> {
         self.run(py).recording_folder()
@@ -148,13 +148,13 @@ impl Simulation {
         self.run(py).scene.duration_secs
     }
 
-    /// The diameter d that lengths are measured in, m.
+    /// The mean diameter d, the unit of reported lengths, m.
     #[getter]
     fn mean_diameter(&self, py: Python<'_>) -> f64 {
         self.run(py).scene.mean_diameter
     }
 
-    /// The scene's g, m/s².
+    /// Magnitude g of gravity, m/s².
     #[getter]
     fn gravity(&self, py: Python<'_>) -> f64 {
         self.run(py).simulation.world().gravity.magnitude()

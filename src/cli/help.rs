@@ -1,4 +1,4 @@
-//! What the command line says of itself: help, completions and manual pages.
+//! Help, completions and manual pages of the command line.
 
 use clap::{Arg, Command, CommandFactory};
 
@@ -8,13 +8,13 @@ use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::scene::built_in;
 
-/// The options that `-h` tells of; `--help` has all.
+/// The options that `-h` shows; `--help` shows all.
 const FIRST: [&str; 16] = [
     "scene", "grains", "seed", "preset", "duration", "stepper", "bond", "dt", "rho", "mu",
     "solver", "headless", "frames", "gif", "data", "help",
 ];
 
-/// The options that a window has no use for.
+/// The options that only runs without a window have.
 const HEADLESS: [&str; 13] = [
     "overwrite",
     "fps",
@@ -45,7 +45,7 @@ const RUN_EXAMPLES: &str = "Examples:
   slump run cradle --frames out/ --save end.slump     # to be gone on with:
   slump run --restart end.slump --duration 3 --frames more/";
 
-/// The command line, of which `-h` tells the most important part. Settings say what the shipped pile has.
+/// The command line. `-h` shows its most important part. Long help states the settings of the shipped pile.
 pub fn command() -> Command {
     let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
     let root = Cli::command();
@@ -55,7 +55,7 @@ pub fn command() -> Command {
         let default = pile.and_then(|settings| settings.get(name));
         let is_hidden = !FIRST.contains(&name) && of_root.iter().any(|it| it == name);
         let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
-        // Always there: of an option that is not in the short help, a manual page has the long one or none.
+        // Always set: if an option is not in the short help, a manual page shows its long help, or none.
         let long = match default {
             Some(default) => format!("{help} [pile: {default}]"),
             None => help,
@@ -71,7 +71,7 @@ pub fn command() -> Command {
     tell(root, &told)
 }
 
-/// `run` is without a window whatever is said, and takes its scene as a word.
+/// Makes `run` take its scene as its first argument. It never opens a window.
 fn scene_first(run: Command) -> Command {
     let scene = |scene: Arg| {
         let scene = scene.long(None).index(1).value_name("SCENE").help_heading(None);
@@ -80,8 +80,8 @@ fn scene_first(run: Command) -> Command {
     run.mut_arg("scene", scene).mut_arg("headless", |arg| arg.hide(true)).after_help(RUN_EXAMPLES)
 }
 
-/// A command and those below it, each that takes a scene with its arguments as they are `told`. A negative number is a
-/// value everywhere, so that it is the option that says what is allowed.
+/// Applies `told` to the arguments of all commands that take a scene. A negative number always counts as a value, so
+/// that the option's own check refuses it.
 fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
     let command = command.mut_args(|arg| match arg.get_action().takes_values() {
         true => arg.allow_negative_numbers(true),
@@ -92,7 +92,7 @@ fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
     command.mut_subcommands(|below| tell(below, told))
 }
 
-/// What a shell reads to complete commands and options.
+/// A script with which a shell completes commands and options.
 #[cfg(feature = "manual")]
 pub(super) fn completions(shell: clap_complete::Shell) -> String {
     let mut text = Vec::new();
@@ -100,10 +100,10 @@ pub(super) fn completions(shell: clap_complete::Shell) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// The manual page of the program, or of the command of these names.
+/// The manual page of the program, or of the command with these names.
 ///
 /// # Errors
-/// Where there is no such command.
+/// If there is no such command.
 #[cfg(feature = "manual")]
 pub(super) fn page(names: &[String]) -> Result<String> {
     let mut command = command();

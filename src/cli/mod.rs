@@ -1,4 +1,4 @@
-//! The command line, and one way to say what went wrong.
+//! The command line, and the report of errors.
 
 mod help;
 mod studies;
@@ -113,11 +113,11 @@ enum CliCommand {
     },
 }
 
-/// Exit code of all that went wrong, but for a signal.
+/// Exit code of all errors except signals.
 const REFUSED: u8 = 2;
 
-/// Does what the command line of this process asks for. What goes wrong is one sentence on stderr,
-/// and exit code 2; a run that a signal ended has the code that shells know for it.
+/// Runs the command line of this process. An error is one sentence on stderr and exit code 2; a run that a signal
+/// ended has the exit code that shells use for that signal.
 pub fn main() -> ExitCode {
     ignore_file_size_signal();
     let parsed = check_stack().map_err(|error| (REFUSED, error.to_string())).and_then(|()| parse());
@@ -138,7 +138,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The command line that was given; none where it asked for help or the version. Its frame is one of the largest there are.
+/// The parsed command line; `None` if it asked for help or the version. Its stack frame is one of the largest in the
+/// program.
 #[inline(never)]
 fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
     command()
@@ -147,7 +148,7 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
         .map(Some)
         .or_else(|error| match error.use_stderr() {
             true => Err((REFUSED, refusal_of(&error, command()))),
-            // Help and version.
+            // Help or version.
             false => {
                 note_printed(error.print());
                 Ok(None)
@@ -155,12 +156,12 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
         })
 }
 
-/// Stack of the first thread that is enough for all commands: runs were seen to need more than 512 KiB and less than 768.
-/// A window that opens a session needs more than 2 MiB, which is no reason to refuse a run: 8 are usual where windows are.
+/// Stack of the main thread that is enough for all commands: runs needed between 512 and 768 KiB. A window that opens
+/// a session needs more than 2 MiB, but that is no reason to refuse a run; systems with windows usually have 8 MiB.
 #[cfg(target_os = "linux")]
 const LEAST_STACK_BYTES: u64 = 1 << 20;
 
-/// Refuses to begin where the stack would overflow, which no program survives.
+/// Refuses to start if the stack is too small, because no program survives an overflow.
 fn check_stack() -> Result<()> {
     #[cfg(target_os = "linux")]
     if let Some(bytes) = rustix::process::getrlimit(rustix::process::Resource::Stack).current {
@@ -277,7 +278,7 @@ fn generate(pile: &NewPile, out: &Path) -> Result<()> {
     let NewPile { grains: count, box_width_in_diameters: width, seed, deposition } = pile;
     let command = format!("slump generate --grains {count} --box-width {width} --seed {seed}");
     let comment = match deposition {
-        // The shipped state has these lines alone.
+        // The shipped state has only these lines.
         Deposition::Rain => format!(
             "Discs rained into a box over a rough base and left to come to rest; metres.\n{command}"
         ),
@@ -417,10 +418,10 @@ impl ProblemCommand {
     }
 }
 
-/// Sweeps from which on a solve says how far it is. Fewer: short solves say so, too.
+/// Number of sweeps after which a solve reports its progress. A smaller number makes short solves report, too.
 const LONG_SOLVE_SWEEPS: u32 = 4_096;
 
-/// Prints what several starts led to.
+/// Prints the solutions found from several starts.
 fn print_found(found: &[FoundSolution], starts: u32) {
     let solved = found.iter().filter(|solution| solution.is_solved).count();
     print_line(format_args!("starts          {starts}, under Coulomb's law"));
@@ -442,7 +443,7 @@ fn print_found(found: &[FoundSolution], starts: u32) {
     }
 }
 
-/// Says how far a long solve is, and ends it where a signal came.
+/// Reports the progress of a long solve, and ends it after a signal.
 fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {
     let SolveProgress { sweeps, residual } = progress;
     if let Some(residual) = residual.filter(|_| sweeps >= LONG_SOLVE_SWEEPS) {
@@ -453,7 +454,7 @@ fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// Prints a solution that was to take no more than so many sweeps, and the signal that ended it, if one did.
+/// Prints a solution, its limit of sweeps, and the signal that ended it, if there was one.
 fn print_solution(solution: &Solution, max_sweeps: u32, signal: Option<Signal>) {
     let Solution { contacts, method, sweeps, factorisations, seconds, residual, .. } = solution;
     print_line(format_args!("contacts        {contacts}"));

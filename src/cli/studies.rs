@@ -209,7 +209,7 @@ fn part_of(shard: Option<String>) -> Result<Option<Shard>> {
     shard.map(|text| text.parse()).transpose()
 }
 
-/// Seconds of a time with its unit.
+/// Converts a time with its unit to seconds.
 fn secs_of(text: &str) -> std::result::Result<f64, String> {
     let allowed = || "a time > 0 with its unit, as in 90s, 30min or 2h".to_owned();
     let digits = text.find(|sign: char| sign.is_ascii_alphabetic()).unwrap_or(text.len());
@@ -224,7 +224,7 @@ fn secs_of(text: &str) -> std::result::Result<f64, String> {
     if secs > 0.0 && secs.is_finite() { Ok(secs) } else { Err(allowed()) }
 }
 
-/// A command for each run of a study, which may be given again where it was stopped.
+/// Prints a command for each run of a study. A command that was stopped can be repeated.
 fn list_runs(study: &Path, runs: usize, out: &Path, quick: bool) -> Result<()> {
     let text = |path: &Path| {
         let allowed = "a name that is text";
@@ -277,7 +277,7 @@ fn stability(
     progress.finish();
     let table = table?;
     print_text(&table);
-    // Before the maps, which take longest.
+    // Before the maps, which take the most time.
     if let Some(path) = table_path {
         write_file(path, &table.to_csv()?)?;
         print_line(path.display());

@@ -1,4 +1,4 @@
-//! The paper's Fig. 3, 4 and 7, from simulation to finished figure.
+//! The paper's Figs. 3, 4 and 7, from simulation to finished figure.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -78,7 +78,7 @@ pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoic
     Ok(())
 }
 
-/// Runs everything, dearest first, so that no core waits long for the last one.
+/// Simulates all runs, the most expensive first, so that no core waits long for the last one.
 fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     let steps = |run: &PaperRun| run.scene.duration_secs / run.scene.parameters.time_step_secs;
     let progress = Progress::new("simulating", runs.iter().map(|run| steps(run) as u64).sum());
@@ -89,7 +89,7 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
         .map(|run| {
             let started = Instant::now();
             let until_secs = run.times_secs.iter().copied().fold(0.0, f64::max);
-            // A run that takes no step has no table.
+            // A run without steps has no table.
             let path = folder.join(format!("{}.csv", run.name));
             let table = (until_secs > 0.0).then(|| ObservablesTable::start_as(path)).transpose()?;
             let mut recorder = FigureRecorder { table, snapshots: Vec::new(), progress: &progress };
@@ -105,7 +105,7 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     runs
 }
 
-/// Keeps what the figures need of a run.
+/// Records the parts of a run that the figures need.
 struct FigureRecorder<'a> {
     table: Option<ObservablesTable>,
     snapshots: Vec<Snapshot>,
@@ -127,9 +127,9 @@ impl Recorder for FigureRecorder<'_> {
 
 struct FigurePanel<'a> {
     run: &'a FigureRun,
-    /// Which of the run's snapshots it shows.
+    /// Index of the run's snapshot that is shown.
     number: usize,
-    /// Name of its file, without ending.
+    /// File name without ending.
     name: String,
 }
 
@@ -166,7 +166,7 @@ impl FigureWriter<'_> {
 
     fn fig4(&mut self, runs: &[FigureRun]) -> Result<()> {
         let mut view = common_view(runs, "fig4");
-        // The base belongs to the picture: its discs reach half a diameter below y = 0.
+        // The base is part of the picture: its discs reach half a diameter below y = 0.
         view.min.y = -0.5 * runs[0].paper.scene.mean_diameter;
         let mut panels = Vec::new();
         for bond in FIG4_BONDS {
@@ -217,7 +217,7 @@ impl FigureWriter<'_> {
         self.figure("fig7.png", &figure, &panels)
     }
 
-    /// Draws panels `width` pixels wide and as high as their view asks, and writes each by itself.
+    /// Draws panels `width` pixels wide, with the height that their view needs, and writes each to a file.
     fn panels(
         &mut self,
         [rows, columns]: [usize; 2],
@@ -226,11 +226,11 @@ impl FigureWriter<'_> {
         width: u32,
     ) -> Result<PanelGrid> {
         let height = panel_height(view, width);
-        // The same camera with and without the bar: panels of one figure lie alike.
+        // All panels have the same camera, with or without the scale bar, so that they have the same scale.
         let camera = Style::default().camera(view.min, view.max, width, height);
         let mut images = Vec::new();
         for panel in panels {
-            // The scale is the same in all panels: one bar says it.
+            // All panels have the same scale, so one bar is enough.
             let style = Style { scale_bar: images.is_empty(), ..Style::default() };
             let snapshot = &panel.run.snapshots[panel.number];
             let image = draw_scene(self.renderer, snapshot, &style, &camera, width, height)?;
@@ -242,7 +242,7 @@ impl FigureWriter<'_> {
         Ok(PanelGrid::new(rows, columns, images))
     }
 
-    /// Writes a figure, all of which one command draws.
+    /// Writes a figure that one command draws.
     fn figure(&mut self, file: &str, figure: &PanelGrid, panels: &[FigurePanel]) -> Result<()> {
         let mut texts = Texts::default();
         texts.add("Command line", "slump --headless --frames figures");
@@ -267,7 +267,7 @@ fn of_figure<'a>(runs: &'a [FigureRun], figure: &'a str) -> impl Iterator<Item =
     runs.iter().filter(move |run| run.paper.figure == figure)
 }
 
-/// One view for all panels of a figure, so that they can be compared: it shows all grains of all.
+/// One view for all panels of a figure, which makes them comparable. It shows all grains of all runs.
 fn common_view(runs: &[FigureRun], figure: &str) -> View {
     let snapshots = of_figure(runs, figure).flat_map(|run| &run.snapshots);
     let mut view = View { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
@@ -278,15 +278,15 @@ fn common_view(runs: &[FigureRun], figure: &str) -> View {
     view
 }
 
-/// Height in pixels that shows a view whole, with the margins that [`Style::camera`] leaves.
+/// Height in pixels at which the whole view is visible, with the margins of [`Style::camera`].
 fn panel_height(View { min, max }: View, width: u32) -> u32 {
-    /// Room above and below for margins and scale bar, pixels.
+    /// Space above and below for margins and scale bar, pixels.
     const ROOM: f64 = 70.0;
     let shape = (max.y - min.y) / (max.x - min.x);
     (f64::from(width) * shape + ROOM).ceil() as u32
 }
 
-/// A time step as a journal writes it: Δt = 10^{−4} s, 2·10^{−3} s.
+/// A time step in journal notation: Δt = 10^{−4} s, 2·10^{−3} s.
 fn time_step(secs: f64) -> String {
     let text = format!("{secs:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));

@@ -1,10 +1,9 @@
-//! The folder that a run writes to, its own and of one run alone, and the checkpoint in it, from which the same command
-//! goes on.
+//! The output folder of one run, and its checkpoint, from which the same command resumes the run.
 //!
-//! A run is written by several things at once: rows of a table, pictures, states that wait for being drawn. Each tells a
-//! checkpoint how far it has come, once all of that is on the disk, and comes back to it when the run goes on: what was
-//! written later is cut off, and is written again just as it was. What is to be written besides has a mark of its own
-//! in [`Marks`], which `RunWriter::marks` asks for and `RunWriter::open` hands back.
+//! Several writers fill the folder: the table, the pictures, the states that wait to be drawn. At a checkpoint each
+//! one first writes everything to the disk and then states how far it is. When the run resumes, each goes back to
+//! this mark: later output is cut off and written again, with the same contents. A new kind of output needs a mark of
+//! its own in [`Marks`], which `RunWriter::marks` collects and `RunWriter::open` hands back.
 
 use std::path::{Path, PathBuf};
 
@@ -21,17 +20,17 @@ use crate::output::{
 use crate::scene::Scene;
 use crate::sim::{ForceSums, Simulation, Tally};
 
-/// What becomes of the files of an earlier run.
+/// Treatment of an earlier run's files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EarlierFiles {
-    /// Where there are any, the folder is refused.
+    /// If there are any, the folder is refused.
     Refused,
     Cleared,
-    /// They stay: the run goes on with what it began.
+    /// The files stay, because the run is resumed.
     Kept,
 }
 
-/// A folder that no other run writes to.
+/// An output folder, locked against other runs.
 pub(super) struct RunFolder {
     path: PathBuf,
     earlier: EarlierFiles,
@@ -39,41 +38,41 @@ pub(super) struct RunFolder {
 }
 
 impl RunFolder {
-    /// Makes the folder where it is not there, and takes it for this run.
+    /// Creates the folder if it is missing, and locks it for this run.
     ///
     /// # Errors
-    /// Where it cannot be written to, another run has it, or it holds what is refused.
+    /// If it cannot be written to, another run uses it, or it contains files that are refused.
     pub(super) fn claim(path: &Path, earlier: EarlierFiles) -> Result<Self> {
         let folder = Self::lock(path, earlier)?;
         folder.check("")?;
         Ok(folder)
     }
 
-    /// The same whatever it holds: that is to be looked at.
+    /// Like [`Self::claim`], without a check of the contents.
     ///
     /// # Errors
-    /// Where it cannot be written to, or another run has it.
+    /// If it cannot be written to, or another run uses it.
     pub(super) fn lock(path: &Path, earlier: EarlierFiles) -> Result<Self> {
         check_writable("frames", path)?;
         let lock = FolderLock::of(path, Locked::Pictures)?;
         Ok(Self { path: path.to_owned(), earlier, _lock: lock })
     }
 
-    /// Its path.
+    /// The folder's path.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// True if a run may go on with what it holds.
+    /// True if a run may resume from the folder's contents.
     pub(super) fn may_go_on(&self) -> bool {
         self.earlier == EarlierFiles::Refused
     }
 
-    /// Refuses a folder that holds what is refused, or what is to be cleared and another program wrote; `why` says why no
-    /// run goes on there.
+    /// Refuses a folder with files of an earlier run, or with files to be removed that another program wrote. `why`
+    /// says why no run resumes there.
     ///
     /// # Errors
-    /// Names the first file.
+    /// Names the first such file.
     pub(super) fn check(&self, why: &str) -> Result<()> {
         let names = match self.earlier {
             EarlierFiles::Kept => return Ok(()),
@@ -91,11 +90,11 @@ impl RunFolder {
         Err(Error::value("frames", self.path.display(), allowed))
     }
 
-    /// Removes the pictures in it except those of the `marks` with which the run is resumed, and files that a kill has left
-    /// half named, the `animation` among it where that is in the folder.
+    /// Removes the pictures that are not in the `marks` of the resumed run, and drafts of files that a kill has left,
+    /// including the `animation` if it is in the folder.
     ///
     /// # Errors
-    /// Names a picture or a table that is not there as a whole, or a picture that cannot be removed.
+    /// Names a picture or table that is missing or incomplete, or a picture that cannot be removed.
     pub(super) fn keep(&self, marks: &Marks, animation: Option<&Path>) -> Result<()> {
         let pictures = &marks.pictures;
         let inside = animation.filter(|path| folder_of(path) == self.path);
@@ -123,7 +122,7 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Removes what is to be cleared. To be called when all that was asked is known to be sound.
+    /// Removes the files of an earlier run, if they are to be removed. Call it after all other checks.
     ///
     /// # Errors
     /// Names the file that cannot be removed.
@@ -134,7 +133,7 @@ impl RunFolder {
         let mut names = files_of_a_run(&self.path, None)?;
         names.extend(told_of(&self.path));
         for path in names.iter().map(|name| self.path.join(name)).filter(|path| is_plain(path)) {
-            // A list that anyone can edit may tell of anything.
+            // Anyone can edit the list, so each file is checked.
             if is_recognised(&path)? {
                 std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
             }
@@ -143,7 +142,7 @@ impl RunFolder {
     }
 }
 
-/// The names that every run uses, and that of its `animation`, of those that are there.
+/// The existing files among the names that all runs use and the name of the `animation`.
 fn files_of_a_run(folder: &Path, animation: Option<&str>) -> Result<Vec<String>> {
     let refuse = |error| Error::file(folder, error);
     let mut names = Vec::new();
@@ -164,11 +163,10 @@ fn is_of_every_run(name: &str) -> bool {
     is_frame(name) || ["manifest.json", TABLE, CHECKPOINT, WAITING].contains(&name)
 }
 
-/// Refuses places of one command, each with its option, that are one and the same, or that of a file which the run
-/// writes in its folder.
+/// Refuses two options with the same path, and a path that is also a file of the run in its folder.
 ///
 /// # Errors
-/// Names the option of the first.
+/// Names the first such option.
 pub(super) fn check_apart(places: &[(&str, &Path)], folder: Option<&Path>) -> Result<()> {
     let folder = folder.map(|folder| folder.canonicalize().unwrap_or_else(|_| folder.to_owned()));
     let mut taken: Vec<(&str, PathBuf)> = Vec::new();
@@ -192,7 +190,7 @@ fn is_frame(name: &str) -> bool {
     number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// The pictures and tables that an earlier run's manifest tells of.
+/// The pictures and tables that an earlier run's manifest lists.
 fn told_of(folder: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(folder.join("manifest.json")).unwrap_or_default();
     let manifest: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
@@ -202,65 +200,65 @@ fn told_of(folder: &Path) -> Vec<String> {
     let tables = list("runs")
         .into_iter()
         .filter_map(|it| it["name"].as_str().map(|name| format!("{name}.csv")));
-    // Whatever a file says: nothing outside of its folder is removed.
+    // Files outside the folder are never removed, even if the manifest names them.
     let is_name = |name: &String| Path::new(name).file_name() == Some(name.as_ref());
     pictures.chain(tables).filter(is_name).collect()
 }
 
-/// A file, and neither a link to one nor a pipe: those are there to be written through.
+/// True for a regular file. Links and pipes are written through instead.
 fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
-/// Name of the table of observables.
+/// Name of the table of observables in the folder.
 pub(super) const TABLE: &str = "observables.csv";
-/// Name of a checkpoint.
+/// Name of the checkpoint in the folder.
 pub(super) const CHECKPOINT: &str = "checkpoint.slump";
-/// Name of the file in which states wait for being drawn, where they are to outlive the process.
+/// Name of the file with states that wait to be drawn, if they must outlive the process.
 pub(super) const WAITING: &str = "checkpoint.states";
 
-/// How far everything had come that takes a run down.
+/// How far each output of a run had come at a checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Marks {
-    /// Tells whether a command is the same.
+    /// Fingerprint of the command; only the same command resumes the run.
     pub fingerprint: String,
-    /// The number of the first picture that is not taken yet.
+    /// Number of the next picture.
     pub next_picture: usize,
     /// Length of `observables.csv`, bytes.
     pub table: u64,
-    /// Length of the states that wait for being drawn, bytes.
+    /// Length of the states that wait to be drawn, bytes.
     pub waiting: u64,
     /// Pictures in the folder.
     pub pictures: Vec<PictureEntry>,
-    /// The moment of the saved run that the command went on with, where it did.
+    /// The moment of the saved run from which the command started, if it did.
     pub restarted_from: Option<Instant>,
-    /// Moments at which the same command went on; none in one that has just begun.
+    /// Moments at which the same command resumed the run; empty in a run without interruption.
     pub went_on_at: Vec<Instant>,
-    /// What the recording has.
+    /// How much the recording contains.
     pub recording: RecordingMark,
-    /// What pairs have transmitted since the last of them.
+    /// Sums over contact pairs since the last frame of the recording.
     pub sums: ForceSums,
 }
 
-/// A run that is about to go on, from its start or from later.
+/// A run about to start or resume.
 pub(super) struct Beginning {
     pub state: SavedState,
-    /// How far it had come in the folder that it writes to.
+    /// How far its outputs in the folder had come.
     pub marks: Marks,
 }
 
-/// Saves a run now and then, for the same command to go on with.
+/// Saves a run at intervals, so that the same command can resume it.
 pub(super) struct Checkpoints {
     path: PathBuf,
     every_secs: f64,
     fingerprint: String,
-    /// The number of the next one, in intervals since t = 0.
+    /// Number of the next checkpoint, in intervals since t = 0.
     next: f64,
 }
 
 impl Checkpoints {
-    /// Those of a run in `folder` that begins at this moment.
+    /// Checkpoints of a run in `folder` that begins at this moment.
     pub(super) fn start(
         folder: &Path,
         every_secs: f64,
@@ -275,7 +273,7 @@ impl Checkpoints {
 
     fn skip_to(&mut self, simulation: &Simulation) {
         self.next = (simulation.time_secs() / self.every_secs).floor() + 1.0;
-        // Rounding of sums of Δt must not make two of one.
+        // Rounding of sums of Δt must not write a checkpoint twice.
         if self.is_due(simulation) {
             self.next += 1.0;
         }
@@ -301,17 +299,17 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Removes it: the run is complete, and nothing goes on from there.
+    /// Removes the checkpoint of a complete run.
     pub(super) fn remove(self) -> Result<()> {
         remove_if_there(&self.path)?;
         remove_if_there(&self.path.with_file_name(WAITING))
     }
 }
 
-/// The checkpoint of a command in its folder, if there is one.
+/// The command's checkpoint in the folder, if there is one.
 ///
 /// # Errors
-/// Why this command cannot go on with the one that is there.
+/// Says why this command cannot resume from it.
 pub(super) fn look(
     folder: &Path,
     fingerprint: &str,

@@ -1,4 +1,4 @@
-//! What was run and what came out, beside the pictures.
+//! The manifest: what was run, and the results, in a file beside the pictures.
 
 use std::path::Path;
 use std::time::{Duration, Instant as Clock};
@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::sim::{Alarm, FractureWork, Observables, Tally, hash_of_bits};
 use crate::study::Recorded;
 
-/// `manifest.json`.
+/// Contents of `manifest.json`.
 #[derive(Debug, Serialize)]
 pub(super) struct Manifest {
     pub program: &'static str,
@@ -20,30 +20,30 @@ pub(super) struct Manifest {
     pub renderer: String,
     pub runs: Vec<RunEntry>,
     pub pictures: Vec<PictureEntry>,
-    /// When it was last written while the run went on, and how long that took.
+    /// Time of the last write during the run, and its duration.
     #[serde(skip)]
     written: Clock,
     #[serde(skip)]
     writing_took: Duration,
 }
 
-/// Pictures that are drawn within this time may miss in the manifest of a run that is killed.
+/// Shortest time between two writes. If a run is killed, its manifest may lack the pictures of this time.
 const WAIT: Duration = Duration::from_millis(500);
-/// A list that has become long is written less often: it takes no more than this part of the time.
+/// Writing takes at most 1/20 of the time, so a long manifest is written less often.
 const PART: u32 = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum RunStatus {
-    /// Not yet; or it was killed.
+    /// The run has not ended, or was killed.
     Running,
-    /// At its full duration.
+    /// The run reached its full duration.
     Complete,
-    /// By a signal.
+    /// A signal ended the run.
     Interrupted,
-    /// Its state was no longer finite.
+    /// The state was no longer finite.
     NotFinite,
-    /// It could not be written down.
+    /// Writing the results failed.
     Failed,
 }
 
@@ -62,40 +62,40 @@ impl RunStatus {
 pub(super) struct RunEntry {
     pub name: String,
     pub ended: RunStatus,
-    /// Steps that it got to.
+    /// Number of steps taken.
     pub step: u64,
-    /// Simulated time that it got to, s.
+    /// Simulated time at the end, s.
     pub time_secs: f64,
-    /// All that the scene says, except for its lists of discs.
+    /// The scene without its lists of discs.
     pub scene: serde_json::Value,
     pub grains: usize,
     pub fixed_discs: usize,
-    /// Tells initial states apart: FNV-1a over all numbers of the grains, bit by bit.
+    /// Hash of the initial state: FNV-1a over the bits of all numbers of the grains.
     pub initial_state: String,
-    /// Tells the states apart that runs come to ([`crate::sim::Snapshot::state_hash`]); empty until it has ended.
+    /// Hash of the final state ([`crate::sim::Snapshot::state_hash`]); empty until the run has ended.
     pub last_state: String,
     pub tally: Tally,
-    /// The moment of the saved run that this one goes on with (`--restart`).
+    /// The moment of the saved run from which this run starts (`--restart`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restarted_from: Option<Instant>,
-    /// Where the same command went on with a checkpoint.
+    /// Moments at which the same command resumed from a checkpoint.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub went_on_at: Vec<Instant>,
-    /// What went wrong, and what is most likely to help.
+    /// Alarms, with the change that is most likely to help.
     pub alarms: Vec<AlarmEntry>,
-    /// Dimensionless (paper §3.3).
+    /// Cohesive time, dimensionless (paper §3.3).
     pub cohesive_time: f64,
-    /// m/s (paper eq. 9).
+    /// Capture speed, m/s (paper eq. 9).
     pub capture_speed: f64,
-    /// Substeps of each step; 1 where its problem is solved as a whole.
+    /// Substeps per step; 1 if the problem is solved as a whole.
     pub substeps: u32,
-    /// The longest substep that is surely stable, s, where the method has one.
+    /// Longest substep that is certainly stable, s, if the stepper has such a limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step_secs: Option<f64>,
-    /// How long two grains of the mean mass that meet push each other, s, where contacts are springs.
+    /// Contact time of two colliding grains of mean mass, s, if contacts are springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_time_secs: Option<f64>,
-    /// What it takes to break the bond of two such grains, where the contact law says so.
+    /// Fracture work of the bond of two such grains, if the contact law defines it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fracture_work: Option<FractureWork>,
 }
@@ -105,7 +105,7 @@ pub(super) struct RunEntry {
 #[serde(deny_unknown_fields)]
 pub(super) struct Instant {
     pub step: u64,
-    /// s.
+    /// Simulated time, s.
     pub time_secs: f64,
 }
 
@@ -123,15 +123,15 @@ pub(super) struct AlarmEntry {
     pub message: String,
 }
 
-/// One picture.
+/// A picture, with the moments that it shows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct PictureEntry {
     pub file: String,
-    /// A moment a panel.
+    /// One moment per panel.
     pub shows: Vec<ShownMoment>,
 }
 
-/// One moment of a run.
+/// A moment of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ShownMoment {
     pub run: String,
@@ -143,7 +143,7 @@ impl Manifest {
         Self {
             program: "slump",
             version: crate::VERSION,
-            // What is not UTF-8 cannot be told in JSON as it is.
+            // JSON has only UTF-8, so other bytes are replaced.
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
             renderer: renderer.to_owned(),
             runs: Vec::new(),
@@ -157,15 +157,15 @@ impl Manifest {
         self.write_and(path, true)
     }
 
-    /// Adds a picture, and every now and then writes what there is: a program that is killed has no
-    /// other time to do it.
+    /// Adds a picture, and writes the manifest from time to time, because a program that is killed cannot write it
+    /// later.
     pub(super) fn add(&mut self, picture: PictureEntry, path: &Path) -> Result<()> {
         self.pictures.push(picture);
         if self.written.elapsed() < WAIT.max(PART * self.writing_took) {
             return Ok(());
         }
         let begun = Clock::now();
-        // Not worth waiting for the disk.
+        // Does not wait until the disk has it.
         self.write_and(path, false)?;
         (self.written, self.writing_took) = (Clock::now(), begun.elapsed());
         Ok(())
@@ -182,7 +182,7 @@ impl Manifest {
 }
 
 impl RunEntry {
-    /// The entry of a run that begins.
+    /// The entry of a run at its start.
     pub(super) fn start(name: &str, scene: &Scene) -> Result<Self> {
         let mut said = serde_json::to_value(scene)
             .map_err(|error| Error::value("scene", name, error.to_string()))?;
@@ -215,7 +215,7 @@ impl RunEntry {
         })
     }
 
-    /// Tells what came of the run.
+    /// Records how the run ended, with its results.
     pub(super) fn end(&mut self, ended: RunStatus, recorded: &Recorded) {
         let Recorded { simulation, tally, .. } = recorded;
         let Observables { step, time_secs, .. } = *simulation.observables();
@@ -228,7 +228,7 @@ impl RunEntry {
     }
 }
 
-/// Tells initial states apart.
+/// Hash of an initial state.
 fn hash_of_start(scene: &Scene) -> String {
     hash_of_bits(scene.grains.iter().flat_map(|grain| {
         let (position, velocity) = (grain.position, grain.velocity);

@@ -21,16 +21,15 @@ use crate::error::Result;
 use crate::output::heed_signals;
 use folder::EarlierFiles;
 
-/// Draws the paper's snapshots into a folder, with whatever renderer there is.
+/// Draws the paper's snapshots into a folder, with any available renderer.
 ///
 /// # Errors
-/// Where the folder cannot be written to.
+/// If the folder cannot be written to.
 pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
     figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }
 
-/// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
-/// figures.
+/// Draws the pictures that `options` ask for, or the paper's figures if neither scene nor frames are given.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     heed_signals();
     let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };

@@ -1,4 +1,4 @@
-//! Options of pictures, recordings and saved runs, and what files say of the command that makes them again.
+//! Options of pictures, recordings and saved runs, and the command lines that files contain for making them again.
 
 use std::path::{Path, PathBuf};
 
@@ -127,13 +127,13 @@ pub(crate) struct HeadlessOptions {
 }
 
 const DEFAULT_SIZE: PictureSize = PictureSize { width: 960, height: 540 };
-/// Pictures per simulated second where neither rate nor times are given.
+/// Default number of pictures per simulated second.
 const DEFAULT_FPS: f64 = 25.0;
-/// More pictures than this are a mistake rather than a wish.
+/// Largest number of pictures. More are a mistake rather than a wish.
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// True where anything is said beside where the paper's figures go.
+    /// True if any option is given that does not belong to the paper's figures.
     pub(super) fn asks_for_frames(&self) -> bool {
         let Self { headless, overwrite, renderer, .. } = *self;
         let frames = self.frames.clone();
@@ -144,14 +144,14 @@ impl HeadlessOptions {
         self.frames.is_some() || self.animation().is_some()
     }
 
-    /// The files that are asked for one by one, each with its option.
+    /// The files that have an option of their own, with that option.
     pub(super) fn files(&self) -> Vec<(&'static str, &Path)> {
         let files = [("gif", &self.gif), ("video", &self.video), ("save", &self.save)];
         files.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))).collect()
     }
 
-    /// Fails where nothing is to be written, or an option of pictures is given and there are none. `data` is the recording
-    /// that is asked for.
+    /// Checks that there is an output, and that options of pictures come with pictures. `data` is the requested
+    /// recording.
     pub(super) fn check_places(&self, data: Option<&DataSettings>) -> Result<()> {
         if self.draws() {
             return Ok(());
@@ -176,7 +176,7 @@ impl HeadlessOptions {
         Ok(())
     }
 
-    /// A file that moves, if there is to be one.
+    /// The path of the GIF or video, if one is requested.
     pub(super) fn animation(&self) -> Option<&Path> {
         self.gif.as_deref().or(self.video.as_deref())
     }
@@ -219,12 +219,12 @@ impl HeadlessOptions {
         Ok(Style { range, ..style })
     }
 
-    /// Pictures per simulated second where no times are given.
+    /// Pictures per simulated second, if no times are given.
     pub(super) fn pictures_per_sec(&self) -> Result<f64> {
         Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video_speed()?))
     }
 
-    /// Simulated seconds in a second of the video; of pictures without a video in a second of what is shown.
+    /// Simulated seconds per second of video; 1 without an option.
     fn video_speed(&self) -> Result<f64> {
         let Some(speed) = self.video_speed else { return Ok(1.0) };
         if self.video.is_none() {
@@ -260,7 +260,7 @@ impl HeadlessOptions {
         check_ffmpeg(path.display()).map(|()| rate_hz)
     }
 
-    /// The times of the pictures of a run that lasts `duration_secs`, s, rising.
+    /// The times of the pictures of a run of `duration_secs`, s, in ascending order.
     pub(crate) fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
         if !self.times.is_empty() {
             let allowed = format!("between 0 and the duration of {duration_secs} s");
@@ -276,7 +276,7 @@ impl HeadlessOptions {
         let last = (duration_secs * fps * (1.0 + 1e-12)).floor();
         if !(fps > 0.0 && last < MOST_PICTURES) {
             let allowed = format!("> 0, and no more than {MOST_PICTURES} pictures in all");
-            // The user wrote the one or the other.
+            // Names the option that the user gave.
             return Err(match self.fps {
                 Some(fps) => Error::value("fps", fps, allowed),
                 None => Error::value(
@@ -291,7 +291,7 @@ impl HeadlessOptions {
 }
 
 impl HeadlessOptions {
-    /// Fails where the time between checkpoints is none.
+    /// Refuses a time between checkpoints that is not positive and finite.
     pub(super) fn check_checkpoints(&self) -> Result<()> {
         match self.checkpoint_every {
             Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
@@ -301,7 +301,7 @@ impl HeadlessOptions {
         }
     }
 
-    /// The recording that is asked for by these and by the scene; these go first. Nothing where neither names a folder.
+    /// The requested recording: options override the scene. `None` if neither names a folder.
     pub(super) fn data_settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
         let of_scene = scene.data.clone().unwrap_or_default();
         let given = !self.data_format.is_empty();
@@ -318,7 +318,7 @@ impl HeadlessOptions {
     }
 }
 
-/// What a panel of a figure says of itself, of a scene that is built in.
+/// Texts that the file of a figure's panel contains, for a built-in scene.
 pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
     let settings = scene.settings();
     let words = Config::of_scene(&scene.name).words(&settings)?;
@@ -329,12 +329,12 @@ pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts
 }
 
 impl HeadlessOptions {
-    /// What a run is made of that `config` and these options ask for.
+    /// The provenance of the run that `config` and these options describe.
     pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
         let settings = scene.settings();
         let words = match &self.restart {
             None => {
-                // Frames are the same however long the run goes on after them.
+                // Frames do not depend on the duration of the run after them.
                 let mut config = config.clone();
                 config.source.duration = None;
                 config.words(&settings)?
@@ -347,7 +347,7 @@ impl HeadlessOptions {
         Ok(Provenance { scene: scene.name.clone(), settings, words })
     }
 
-    /// What the picture at a simulated time (s) says of itself.
+    /// Texts that the picture at a simulated time (s) contains.
     pub(super) fn texts_of_frame(&self, run: &Provenance, time_secs: f64, style: &Style) -> Texts {
         let frames = ["--frames".to_owned(), "frames".to_owned()];
         run.texts(
@@ -356,7 +356,7 @@ impl HeadlessOptions {
         )
     }
 
-    /// What an animation of a run that lasts so long (s) says of itself; its command ends with `last_words`.
+    /// Texts that an animation of a run of this duration (s) contains. Its command ends with `last_words`.
     pub(super) fn texts_of_animation(
         &self,
         run: &Provenance,
@@ -380,7 +380,7 @@ impl HeadlessOptions {
         run.texts(None, &words)
     }
 
-    /// The options that draw alike, with the scales that the frames have.
+    /// The options that reproduce the drawing, with the scales of the frames.
     fn words_of_style(&self, style: &Style) -> Vec<String> {
         let named = |value: Option<clap::builder::PossibleValue>| {
             value.map_or_else(String::new, |value| value.get_name().to_owned())

@@ -1,5 +1,5 @@
-//! The run of one scene: where it begins, with a scene at t = 0, with a run that was saved, or with the checkpoint that
-//! the same command left in its folder, and what it writes.
+//! The run of one scene: its beginning (a scene at t = 0, a saved run, or the checkpoint that the same command left
+//! in its folder) and its outputs.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::scene::{Scene, Settling};
 use crate::sim::{Observables, Simulation, Tally};
 use crate::study::{OnItsWay, go_on as go_on_with};
 
-/// Simulates the scene, or lets a saved run go on, and draws the frames.
+/// Simulates the scene or resumes a saved run, and draws the frames.
 pub(super) fn draw(
     config: &Config,
     options: &HeadlessOptions,
@@ -40,10 +40,10 @@ pub(super) fn draw(
     let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
     let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
     let mut places = options.files();
-    // A run that is resumed replaces the files that it left when it was stopped.
+    // A resumed run replaces the files that it left when it was stopped.
     let replaces = options.overwrite || found.is_some();
     places.iter().try_for_each(|(option, path)| check_new_file(option, path, replaces))?;
-    // The folder of pictures may be the same.
+    // The recording may be in the folder of the pictures.
     places.extend(data.as_ref().map(|(folder, _)| ("data", &**folder)));
     check_apart(&places, options.frames.as_deref())?;
     if let Some(gif) = options.gif.as_deref().filter(|path| path.extension().is_some()) {
@@ -66,7 +66,7 @@ pub(super) fn draw(
     };
     let goes_on = !begun.marks.went_on_at.is_empty();
     if let (true, Some(plan)) = (goes_on, &recording) {
-        // Before anything is cut: a run that is refused keeps all that it has.
+        // Before anything is cut, so that a refused run keeps all its files.
         plan.check(begun.state.simulation.observables().step, &begun.marks.recording)?;
     }
     if let Some(folder) = &folder {
@@ -82,7 +82,7 @@ pub(super) fn draw(
 
     let Beginning { state: SavedState { scene, simulation, tally, .. }, marks } = begun;
     let steps = simulation.step_at(until_secs);
-    // Of which small grains may need very many.
+    // Small grains may need very many substeps.
     let substeps = u64::from(simulation.substeps());
     warn_of_steps(steps.saturating_sub(simulation.observables().step).saturating_mul(substeps));
     let next_picture = marks.next_picture;
@@ -91,7 +91,7 @@ pub(super) fn draw(
         Checkpoints::start(folder.path(), every_secs, fingerprint, &simulation)
     });
     if let (Some(checkpoints), false) = (&mut checkpoints, goes_on) {
-        // Before anything else is there that another run would be refused for.
+        // Before any other file exists for which a repeated command would be refused.
         checkpoints.write(&scene, &simulation, &tally, marks.clone())?;
     }
     let start = |plan: RecordingPlan| -> Result<Recording> {
@@ -108,7 +108,7 @@ pub(super) fn draw(
     writer.end(recorded)
 }
 
-/// Says on stderr which of the settings that are asked for change nothing.
+/// Reports on stderr the given settings that have no effect.
 fn tell_of_unread_settings(config: &Config, scene: &Scene) {
     let unread = config.unread_by(scene.stepper);
     if !unread.is_empty() {
@@ -117,8 +117,8 @@ fn tell_of_unread_settings(config: &Config, scene: &Scene) {
     }
 }
 
-/// The run that the same command left in its folder, if there is one to go on with. Any other files of an
-/// earlier run are refused, unless they are to be removed.
+/// The run that the same command left in its folder, if it can be resumed. Other files of an earlier run are refused,
+/// unless they are to be removed.
 fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Option<Beginning>> {
     let Some(folder) = folder else { return Ok(None) };
     let Some(fingerprint) = fingerprint.filter(|_| folder.may_go_on()) else {
@@ -136,30 +136,30 @@ fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Opti
     }
 }
 
-/// What is asked for, read and checked, but for grains that have to settle.
+/// The requested run, read and checked, before its grains settle.
 pub(super) enum RequestedRun {
-    /// A scene from t = 0 on, with its grains where they start from.
+    /// A scene from t = 0 on, with its grains at their initial places.
     Scene(Box<Scene>),
-    /// A run that was saved, with the changes asked for.
+    /// A saved run, with the requested changes.
     Run(Box<SavedState>),
 }
 
-/// When pictures are taken, and when the run ends, s.
+/// The times of the pictures and the end of the run, s.
 pub(super) struct PictureSchedule {
     pub times_secs: Vec<f64>,
     pub until_secs: f64,
 }
 
 impl RequestedRun {
-    /// What the options ask for.
+    /// Reads and checks the run that the options describe.
     ///
     /// # Errors
-    /// Names what is refused.
+    /// Names the refused value.
     pub(super) fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
         options.check_checkpoints()?;
         let Some(path) = &options.restart else {
             let start = config.without_settling()?;
-            // Shapes that are none and discs in one place are told of before anything is written.
+            // Degenerate shapes and coinciding discs are reported before anything is written.
             start.simulation()?;
             return Ok(Self::Scene(Box::new(start)));
         };
@@ -169,7 +169,7 @@ impl RequestedRun {
         Ok(Self::Run(Box::new(state)))
     }
 
-    /// The scene, with the settings asked for.
+    /// The scene with the requested settings.
     pub(super) fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
@@ -177,22 +177,22 @@ impl RequestedRun {
         }
     }
 
-    /// When pictures are taken.
+    /// The times of the pictures and the end of the run.
     ///
     /// # Errors
-    /// Where a time is none of the run's.
+    /// If a time is not within the run.
     pub(super) fn schedule(
         &self,
         config: &Config,
         options: &HeadlessOptions,
     ) -> Result<PictureSchedule> {
-        // Where no picture is asked for, there may be any number of times.
+        // Without pictures the number of times is not limited.
         let has_times = options.draws() || !options.times.is_empty();
         let times_secs = match has_times {
             true => options.picture_times(self.scene().duration_secs)?,
             false => Vec::new(),
         };
-        // Times alone ask for no more than the last of them.
+        // If only times are given, the run ends at the last one.
         let until_secs = match times_secs.last() {
             Some(&last) if !options.times.is_empty() && config.source.duration.is_none() => last,
             _ => self.scene().duration_secs,
@@ -214,10 +214,10 @@ impl RequestedRun {
         }
     }
 
-    /// Tells commands apart by what they compute and draw; where to, and what they save, is left out.
+    /// A fingerprint of what the command computes and draws. Output paths and saved files do not count.
     ///
     /// # Errors
-    /// Where what is asked for cannot be put into bytes.
+    /// If the request cannot be written as bytes.
     pub(super) fn fingerprint(&self, config: &Config, options: &HeadlessOptions) -> Result<String> {
         let refuse = |error: &dyn std::fmt::Display| {
             Error::value("scene", &self.scene().name, format!("written ({error})"))
@@ -243,10 +243,10 @@ impl RequestedRun {
         Ok(hasher.finalize().to_hex().to_string())
     }
 
-    /// The run, once its grains have settled.
+    /// The beginning of the run, after its grains have settled.
     ///
     /// # Errors
-    /// Where they do not come to rest.
+    /// If they do not come to rest.
     pub(super) fn begin(self, config: &Config, times_secs: &[f64]) -> Result<Beginning> {
         let (state, restarted_from) = match self {
             Self::Scene(_) => {
@@ -267,7 +267,7 @@ impl RequestedRun {
     }
 }
 
-/// The scene, with progress shown where a new pile has to settle first.
+/// The scene. Progress is shown if a new pile has to settle first.
 pub(crate) fn settled(config: &Config) -> Result<Scene> {
     let progress = Progress::new("settling", 100);
     let scene = config.scene(|Settling { time_secs, limit_secs, .. }| {
@@ -278,19 +278,19 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
     scene
 }
 
-/// A recording that is to be.
+/// A recording that has not started.
 pub(super) struct RecordingPlan {
-    /// A folder of its own; none where a run goes on with the recording that it has.
+    /// The locked folder of the recording; `None` if the run continues its own recording.
     claim: Option<RecordingFolder>,
     folder: PathBuf,
     settings: DataSettings,
 }
 
 impl RecordingPlan {
-    /// Takes the folder of a recording that is asked for, unless a run `goes_on` with what is there.
+    /// Locks the folder of a requested recording, unless a run `goes_on` with the existing one.
     ///
     /// # Errors
-    /// Names what is wrong with the folder.
+    /// Names the problem with the folder.
     pub(super) fn claim(
         (folder, settings): (PathBuf, DataSettings),
         overwrite: bool,
@@ -300,18 +300,18 @@ impl RecordingPlan {
         Ok(Self { claim, folder, settings })
     }
 
-    /// Checks that a run that is resumed finds all that its recording had.
+    /// Checks that the recording of a resumed run is still complete.
     ///
     /// # Errors
-    /// Names what is missing.
+    /// Names the missing part.
     fn check(&self, step: u64, mark: &RecordingMark) -> Result<()> {
         Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
     }
 
-    /// Starts it, or resumes it as `mark` says, at the present state of a run.
+    /// Starts the recording, or resumes it at `mark`, at the present state of a run.
     ///
     /// # Errors
-    /// Where the folder cannot be written to, or lacks one of them.
+    /// If the folder cannot be written to, or a part is missing.
     pub(super) fn start(
         self,
         scene: &Scene,

@@ -1,4 +1,4 @@
-//! `observables.csv`, there from the first row on.
+//! The table `observables.csv`, written during the run.
 
 use std::io::{Error as IoError, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
@@ -9,15 +9,15 @@ use crate::error::{Error, Result};
 use crate::output::{GrowingFile, end_of_last};
 use crate::sim::Observables;
 
-/// Rows wait no longer than this for being written, as long as steps come. Shorter: small scenes spend
-/// their time in system calls; longer: more is lost when the program is killed.
+/// Longest time that a row waits to be written while steps are taken. With a shorter time small scenes spend their
+/// time in system calls; with a longer time a kill loses more.
 const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
-/// Bytes of rows that wait. Small scenes fill them sooner than [`LONGEST_WAIT`].
+/// Largest number of bytes that wait to be written. Small scenes reach it sooner than [`LONGEST_WAIT`].
 const MOST_WAITING: usize = 1 << 16;
 
-/// A row a step. Whole rows alone are written, so that a run that is killed, or that fills the disk,
-/// leaves a table that can be read.
+/// The table of observables, one row per step. Only whole rows are written, so that the table is readable after a
+/// kill or on a full disk.
 pub(super) struct ObservablesTable {
     path: PathBuf,
     rows: csv::Writer<WholeRows>,
@@ -30,7 +30,7 @@ impl ObservablesTable {
         Self::start_as(folder.join(TABLE))
     }
 
-    /// Goes on with the first `length` bytes of `observables.csv` in a folder.
+    /// Continues after the first `length` bytes of `observables.csv` in a folder.
     pub(super) fn go_on(folder: &Path, length: u64) -> Result<Self> {
         Ok(Self::of(GrowingFile::go_on(folder.join(TABLE), length)?))
     }
@@ -40,7 +40,7 @@ impl ObservablesTable {
         Ok(Self::of(GrowingFile::start(path)?))
     }
 
-    /// The names of the columns are in a file that has rows.
+    /// A table in a file. A file with rows already has the names of the columns.
     fn of(file: GrowingFile) -> Self {
         let mut builder = csv::WriterBuilder::new();
         builder.has_headers(file.length() == 0).buffer_capacity(MOST_WAITING);
@@ -60,7 +60,7 @@ impl ObservablesTable {
         Ok(())
     }
 
-    /// Has all rows on the disk, and tells their length, bytes.
+    /// Writes all rows to the disk. Returns their length, bytes.
     pub(super) fn mark(&mut self) -> Result<u64> {
         self.flush()?;
         let file = &self.rows.get_ref().file;
@@ -68,18 +68,18 @@ impl ObservablesTable {
         Ok(file.length())
     }
 
-    /// Writes the rows that wait and has all of them on the disk.
+    /// Writes the waiting rows, and waits until all rows are on the disk.
     pub(super) fn finish(mut self) -> Result<()> {
         self.mark().map(drop)
     }
 }
 
-/// Takes bytes and writes whole rows.
+/// A writer that takes bytes and passes on whole rows.
 struct WholeRows {
     file: GrowingFile,
-    /// The beginning of a row whose end has not come yet.
+    /// The beginning of an incomplete row.
     begun: Vec<u8>,
-    /// True if it took no more; rows that come later would leave a gap.
+    /// True after a failed write; later rows would leave a gap.
     is_full: bool,
 }
 

@@ -1,4 +1,4 @@
-//! States that wait on disk for being drawn.
+//! States that wait on disk to be drawn.
 
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -12,13 +12,13 @@ use crate::output::{DraftFile, nameless_file};
 use crate::render::{Style, automatic_range, force_reference};
 use crate::sim::Snapshot;
 
-/// States of a run whose colours and widths follow the state: all frames need one scale, and that is
-/// known at the end. They wait in a file that has no name, so that it is gone with the process, unless the
-/// run is to go on after that.
+/// States of a run whose colours and widths need the same scale in all frames. The scale is known only at the end of
+/// the run. The states wait in a file without a name, which disappears with the process, or in a named file if the
+/// run may be resumed.
 pub(crate) struct WaitingStates {
     path: PathBuf,
     file: DraftFile,
-    /// Where in the file each state begins, and where the last one ends.
+    /// Offsets of all states in the file, and the end of the last one.
     places: Vec<u64>,
     range: Option<(f64, f64)>,
     force_reference: f64,
@@ -33,11 +33,10 @@ struct WaitingState {
 }
 
 impl WaitingStates {
-    /// Where states wait if the style asks for it; in a file that can `outlive` the process if that is asked
-    /// for.
+    /// A place for waiting states, if the style needs one. Its file can `outlive` the process.
     ///
     /// # Errors
-    /// Names the file and what the system says.
+    /// Names the file and gives the system's message.
     pub(super) fn asked_for(
         options: &HeadlessOptions,
         style: &Style,
@@ -60,15 +59,13 @@ impl WaitingStates {
         }
     }
 
-    /// Starts with none. The file is in `folder`, or where the system has such files if none can be
-    /// there.
+    /// An empty place. Its file is in `folder`, or in the system's temporary folder if `folder` does not allow it.
     pub(crate) fn start(folder: &Path) -> Result<Self> {
         let file = nameless_file(folder).or_else(|_| nameless_file(&std::env::temp_dir()));
         Ok(Self::of(folder, file.map_err(|error| Error::file(folder, error))?))
     }
 
-    /// Goes on with the states in the first `length` bytes of a file of that name, which are to be drawn in
-    /// that style. With no length it begins with none.
+    /// Continues with the states in the first `length` bytes of a file, which are to be drawn in this style.
     pub(super) fn go_on(path: &Path, length: u64, style: &Style) -> Result<Self> {
         #[cfg(not(target_arch = "wasm32"))]
         let file =
@@ -95,13 +92,13 @@ impl WaitingStates {
         self.places.len() - 1
     }
 
-    /// Has all states on the disk, and tells their length in the file, bytes.
+    /// Writes all states to the disk. Returns their length in the file, bytes.
     pub(super) fn mark(&self) -> Result<u64> {
         self.file.sync_data().map_err(|error| self.refuse(error))?;
         Ok(self.end())
     }
 
-    /// Adds a state that is to be drawn in that style.
+    /// Adds a state that is to be drawn in this style.
     pub(crate) fn add(&mut self, style: &Style, number: usize, snapshot: Snapshot) -> Result<()> {
         self.measure(style, &snapshot);
         let state = rmp_serde::to_vec_named(&WaitingState { number, snapshot });
@@ -119,14 +116,14 @@ impl WaitingStates {
         self.force_reference = self.force_reference.max(force_reference(style, snapshot));
     }
 
-    /// Gives the style the scale that all states have in common, but for what it has.
+    /// Sets the style's missing scales to those of all states.
     pub(crate) fn set_scale(&self, style: &mut Style) {
         let reference = Some(self.force_reference).filter(|&largest| largest > 0.0);
         style.range = style.range.or(self.range);
         style.force_reference = style.force_reference.or(reference);
     }
 
-    /// One of the states, by its place among them, with the number of its picture.
+    /// The state at an index, with the number of its picture.
     pub(crate) fn get(&mut self, index: usize) -> Result<(usize, Snapshot)> {
         let place = SeekFrom::Start(self.places[index]);
         self.file.seek(place).map_err(|error| self.refuse(error))?;
@@ -138,11 +135,11 @@ impl WaitingStates {
         self.places.last().copied().unwrap_or(0)
     }
 
-    /// The state that begins where the file is read from.
+    /// Reads the state at the file's position.
     fn read(&self) -> Result<WaitingState> {
         let (mut file, mut length, mut bytes) = (&self.file, [0; 8], Vec::new());
         let read = file.read_exact(&mut length);
-        // As much room as there are bytes, whatever a damaged file asks for.
+        // Reads no more bytes than the file has, even if a damaged file gives a larger length.
         let read =
             read.and_then(|()| file.take(u64::from_le_bytes(length)).read_to_end(&mut bytes));
         read.map_err(|error| self.refuse(error))?;

@@ -1,5 +1,5 @@
-//! What a run writes: its table, pictures, animations, recording and manifest, and the checkpoints from which all of
-//! them go on.
+//! The outputs of a run: table, pictures, animations, recording and manifest, and the checkpoints from which all of
+//! them resume.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -25,7 +25,7 @@ use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
 const RUN: &str = "run";
-/// Pictures a second of a GIF, which viewers keep up with.
+/// Frame rate of a GIF, Hz, which viewers can show.
 const GIF_RATE_HZ: f64 = 25.0;
 
 pub(super) struct RunWriter<'a> {
@@ -38,19 +38,19 @@ pub(super) struct RunWriter<'a> {
     table: Option<ObservablesTable>,
     gif: Option<Animation>,
     video: Option<Video>,
-    /// Colours and widths that follow the state need one scale for all frames, so those frames wait
-    /// for the end of the run, unless it is given. All others are drawn as the run comes by.
+    /// Frames that wait for the end of the run, because their colours and widths need one scale. Other frames are
+    /// drawn during the run.
     waiting: Option<WaitingStates>,
     pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
     checkpoints: Option<Checkpoints>,
-    /// Where the run begins, and where it has come to.
+    /// The marks at which the run begins, with `next_picture` kept up to date.
     marks: Marks,
 }
 
 impl<'a> RunWriter<'a> {
-    /// Starts the files of a run that goes on from `marks` to step `end`.
+    /// Starts the outputs of a run that continues from `marks` to step `end`.
     pub(super) fn open(
         options: &'a HeadlessOptions,
         renderer: Renderer,
@@ -100,7 +100,7 @@ impl<'a> RunWriter<'a> {
         Ok(writer)
     }
 
-    /// Gives GIF and video the pictures that a run has left before it goes on.
+    /// Adds the pictures of a resumed run to GIF and video.
     fn animate_earlier_pictures(&mut self) -> Result<()> {
         if self.gif.is_none() && self.video.is_none() {
             return Ok(());
@@ -122,9 +122,9 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    /// How far everything has come, once all of that is where readers find it.
+    /// How far each output has come, after all of it is on the disk.
     fn marks(&mut self) -> Result<Marks> {
-        // It knows itself what it has of which step.
+        // The recording keeps its own mark per step.
         let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
         Ok(Marks {
             table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
@@ -145,11 +145,11 @@ impl<'a> RunWriter<'a> {
         checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally, marks))
     }
 
-    /// Saves the run as it has ended, for the same command and for others.
+    /// Saves the final state, as a checkpoint for the same command and as the requested file.
     fn save(&mut self, recorded: &Recorded) -> Result<()> {
         let Recorded { simulation, tally, failure, .. } = recorded;
         let checkpoint = match failure {
-            // There is a good one from before.
+            // The previous checkpoint is good.
             Some(_) => Ok(()),
             None => self.checkpoint(simulation, tally),
         };
@@ -163,8 +163,7 @@ impl<'a> RunWriter<'a> {
         checkpoint.and(saved)
     }
 
-    /// Ends the files of a run that has ended. Each part is tried, whatever became of those before; the first
-    /// failure is told.
+    /// Ends the outputs of a run. Each part is tried even if another has failed; the first failure is returned.
     pub(super) fn end(mut self, mut recorded: Recorded) -> Result<()> {
         self.progress.finish();
         let scene = self.scene;
@@ -191,11 +190,11 @@ impl<'a> RunWriter<'a> {
         }
     }
 
-    /// Draws the states that wait, those of a run that a signal ended too. A signal that comes now
-    /// ends it; that or the run's is returned.
+    /// Draws the waiting states, even if a signal has ended the run. A signal during drawing ends it. Returns this
+    /// signal or the run's.
     fn draw_waiting(&mut self, ended_by: Option<Signal>) -> Result<Option<Signal>> {
         let Some(mut waiting) = self.waiting.take() else { return Ok(ended_by) };
-        // This may take longer than whoever asked for the end is ready to wait.
+        // Drawing may take longer than the sender of the signal waits.
         self.write_manifest()?;
         waiting.set_scale(&mut self.style);
         let progress = Progress::new("drawing", waiting.len() as u64);
@@ -228,7 +227,7 @@ impl<'a> RunWriter<'a> {
         self.animate(image)
     }
 
-    /// Adds a picture to GIF and video. Each says of itself how to make it again.
+    /// Adds a picture to GIF and video. Each contains the command that makes it again.
     fn animate(&mut self, image: RgbaImage) -> Result<()> {
         let Self { options, scene, provenance, style, .. } = self;
         let texts = |words: &[&str]| {
@@ -250,7 +249,7 @@ impl<'a> RunWriter<'a> {
         let video = self.video.take().map_or(Ok(false), Video::finish);
         let gif = self.gif.take().map_or(Ok(false), Animation::finish);
         self.write_manifest()?;
-        // Where the run is complete, nothing is left to go on with.
+        // A complete run is not resumed.
         if self.manifest.runs[0].ended == RunStatus::Complete
             && let (Ok(_), Ok(_), Some(checkpoints)) = (&video, &gif, self.checkpoints.take())
         {
@@ -277,7 +276,7 @@ impl Recorder for RunWriter<'_> {
     }
 
     fn state(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
-        // Before the checkpoint, which is to have it.
+        // Before the checkpoint, which includes it.
         let recording = self.recording.as_mut();
         recording.map_or(Ok(()), |recording| recording.add_if_due(simulation))?;
         let is_due = self.checkpoints.as_ref().is_some_and(|it| it.is_due(simulation));
@@ -295,34 +294,34 @@ impl Recorder for RunWriter<'_> {
     }
 }
 
-/// Where a finished recording is, and how many frames it has, in words.
+/// A sentence with the place and the number of frames of a finished recording.
 pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
 
-/// A run goes on until a signal comes.
+/// Continues the run until a signal comes.
 pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// That a signal ended the run after its last step.
+/// The error of a run that a signal ended after its last step.
 pub(super) fn interrupted(signal: Signal, last: &Observables) -> Error {
     let (signal, exit_code) = (signal.name(), signal.exit_code());
     Error::Interrupted { signal, exit_code, step: last.step, time_secs: last.time_secs }
 }
 
-/// Says on stderr what went wrong, and what is most likely to help. A state that is no longer finite
-/// ends the run with an error of its own.
+/// Reports on stderr what went wrong and what is most likely to help. A state that is no longer finite ends the run
+/// with an error of its own.
 pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
     for alarm in alarms.iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite) {
         note_line(format_args!("{}: {}", scene.name, alarm.message(&scene.settings())));
     }
 }
 
-/// Says on stderr how many steps were not solved as asked.
+/// Reports on stderr how many steps were not solved to the tolerance.
 pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     let Tally { steps, unconverged_steps, stalled_steps, largest_velocity_error, .. } = *tally;
-    // A scheme has neither tolerance nor sweeps that it could miss.
+    // A scheme has neither a tolerance nor a limit of sweeps.
     if unconverged_steps == 0 || !scene.stepper.uses_method() {
         return;
     }

@@ -1,4 +1,4 @@
-//! Simulated time against the time on the wall.
+//! Simulated time against wall-clock time.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
@@ -6,12 +6,12 @@ use std::time::Duration;
 use super::Pace;
 use crate::Instant;
 
-/// A run that is further behind its pace than this does not try to make up for it.
+/// Largest delay that a run makes up for. With a larger delay its time continues from the present.
 const MOST_LAG: Duration = Duration::from_millis(100);
-/// Rates are means over this long.
+/// Period over which rates are averaged.
 const RATE_WINDOW: Duration = Duration::from_millis(300);
 
-/// What comes within a time; of none, without asking for a clock, which a page has not.
+/// Receives within a time. A zero wait asks for no clock, which a worker in a browser lacks.
 pub(crate) fn receive_within<T>(
     inbox: &Receiver<T>,
     wait: Duration,
@@ -25,15 +25,15 @@ pub(crate) fn receive_within<T>(
     })
 }
 
-/// Says when the next step is due, and how fast steps were taken.
+/// Determines when the next step is due, and measures the rate of steps.
 pub(super) struct Clock {
     pub pace: Pace,
     anchor: (Instant, f64),
     window: (Instant, f64, u64),
     steps: u64,
-    /// Simulated time per time on the wall, lately.
+    /// Recent simulated time per wall-clock time.
     pub real_time_factor: f64,
-    /// Steps of all worlds together, lately, 1/s.
+    /// Recent steps of all worlds together, 1/s.
     pub steps_per_sec: f64,
 }
 
@@ -50,7 +50,7 @@ impl Clock {
         }
     }
 
-    /// Time starts to pass at this simulated time.
+    /// Starts time at this simulated time.
     pub(super) fn start(&mut self, time_secs: f64) {
         let now = Instant::now();
         self.anchor = (now, time_secs);
@@ -64,7 +64,7 @@ impl Clock {
         anchor_secs + factor * anchor.elapsed().as_secs_f64()
     }
 
-    /// How long to wait before the step from `time_secs` is due.
+    /// Time to wait before the step from `time_secs` is due.
     pub(super) fn wait(&mut self, time_secs: f64) -> Duration {
         let Pace::RealTime(factor) = self.pace else { return Duration::ZERO };
         let (anchor, anchor_secs) = self.anchor;

@@ -1,4 +1,4 @@
-//! The observables of a run, as they are shared with a window: cheap to hand over at any length.
+//! The observables of a run in a form that can be shared with a window at any length.
 
 use std::sync::Arc;
 
@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Observables;
 
-/// Rows in a chunk that is shared and never changes again.
+/// Rows of a chunk, which is shared and never changes.
 const CHUNK: usize = 256;
-/// Where a curve becomes longer, every second row is dropped. 32,768 rows are 6 MB.
+/// Largest number of rows. A longer curve drops every second row. 32,768 rows are 6 MB.
 const MOST_ROWS: usize = 32_768;
 
-/// Observables in the order of time: every step's, or every n-th's in a long run.
+/// Observables in order of time: of every step, or of every n-th step in a long run.
 ///
 /// A clone shares all full chunks and copies fewer than 256 rows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ impl Curve {
         self.len() == 0
     }
 
-    /// Only steps whose number is a multiple of this are kept.
+    /// Only steps whose number is a multiple of the stride are kept.
     pub fn stride(&self) -> u64 {
         self.stride
     }
@@ -64,7 +64,7 @@ impl Curve {
         self.thin_to(MOST_ROWS);
     }
 
-    /// Drops every second row until there are no more than that.
+    /// Drops every second row until at most `most_rows` remain.
     pub(super) fn thin_to(&mut self, most_rows: usize) {
         while self.len() > most_rows.max(1) {
             self.stride *= 2;
@@ -73,7 +73,7 @@ impl Curve {
         }
     }
 
-    /// Forgets all steps after `step`.
+    /// Removes all steps after `step`.
     pub(crate) fn truncate(&mut self, step: u64) {
         if self.last().is_some_and(|row| row.step > step) {
             self.keep(|row| row.step <= step);
@@ -91,10 +91,10 @@ impl Curve {
     }
 }
 
-/// What a curve has that one before had not.
+/// The difference between two curves, for sending.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct CurveChange {
-    /// Rows that both begin with.
+    /// Number of first rows that both curves share.
     kept: usize,
     rows: Vec<Observables>,
     stride: u64,

@@ -1,4 +1,4 @@
-//! The loop of the solver's thread: what it is at, and what commands make of that.
+//! The loop of the solver's thread: its mode, and the effect of commands.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -17,10 +17,10 @@ use crate::Instant;
 use crate::error::Error;
 use crate::sim::{Settings, Surroundings};
 
-/// A frame that nobody fetched yet is renewed after so many frame intervals: making one costs time,
-/// and an old one shows late what happens.
+/// Frame intervals after which a frame that nobody has fetched is replaced. Making a frame takes time, but an old one
+/// shows events late.
 const UNFETCHED_INTERVALS: u32 = 3;
-/// Least time between two frames that tell of the progress of a loading.
+/// Shortest time between two frames during loading.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 
 struct Outbox {
@@ -29,9 +29,9 @@ struct Outbox {
     interval: Duration,
     count: u64,
     sent: Instant,
-    /// True if the newest state is one that no frame shows.
+    /// True if no frame shows the newest state.
     is_behind: bool,
-    /// True if the next step is to be shown as soon as it is taken.
+    /// True if the next step must be shown at once.
     is_urgent: bool,
 }
 
@@ -44,22 +44,22 @@ impl Outbox {
 
 pub(super) struct Engine {
     inbox: Receiver<(u64, Command)>,
-    /// Commands that wait for the end of a loading or a seek.
+    /// Commands that wait until a loading or a seek has ended.
     waiting: VecDeque<(u64, Command)>,
     outbox: Outbox,
     start: Option<Arc<LiveStart>>,
-    /// What is around the grains at the start, with the shapes that hold them.
+    /// Surroundings of the grains at the start, with the shapes that hold them.
     held: Option<Arc<Surroundings>>,
     history: RunHistory,
     mode: Mode,
     clock: Clock,
-    /// Where this play pauses, s.
+    /// Simulated time at which playing pauses, s.
     stop_at_secs: Option<f64>,
     refusal: Option<Arc<str>>,
     acknowledged: u64,
     loads: u64,
     quit: bool,
-    /// Asked while a start is made ([`LiveOptions`]).
+    /// Called while a start is made ([`LiveOptions`]).
     gives_up: Box<dyn Fn() -> bool + Send>,
 }
 
@@ -105,8 +105,8 @@ impl Engine {
         while !self.quit && self.turn(true) {}
     }
 
-    /// Takes in all commands and does what is due; where that is nothing and it may, it sleeps until there is something.
-    /// Whether there is anyone left to send commands.
+    /// Handles all commands and does what is due. If nothing is due and it may sleep, it sleeps until something is.
+    /// Returns false if nobody can send commands any more.
     pub(super) fn turn(&mut self, may_sleep: bool) -> bool {
         if !self.receive(may_sleep) {
             return false;
@@ -126,8 +126,8 @@ impl Engine {
         true
     }
 
-    /// Takes in all commands; sleeps for one where nothing else is to be done. Whether there is
-    /// anyone left to send any.
+    /// Handles all commands. If nothing else is due, it sleeps until a command comes. Returns false if nobody can
+    /// send commands any more.
     fn receive(&mut self, may_sleep: bool) -> bool {
         let mut commanded = false;
         loop {
@@ -155,7 +155,7 @@ impl Engine {
             commanded = true;
         }
         if commanded && !self.mode.seeks() {
-            // What was changed shows in the step that comes next, if that comes at once.
+            // The next step shows the change, if it comes at once.
             self.outbox.is_urgent = self.mode.plays() && self.wait_for_step().is_zero();
             if !self.outbox.is_urgent {
                 self.publish();
@@ -164,7 +164,7 @@ impl Engine {
         true
     }
 
-    /// How long nothing is to be done; none where only a command changes that.
+    /// Time until something is due; `None` if only a command can change that.
     pub(super) fn wait(&mut self) -> Option<Duration> {
         if self.mode.seeks() || matches!(self.mode, Mode::Stepping { .. }) {
             return Some(Duration::ZERO);
@@ -282,7 +282,7 @@ impl Engine {
         };
     }
 
-    /// Stops time. A stored moment that is shown is computed: others are to go on from it.
+    /// Stops time. If a stored moment is shown, its state is computed, so that the run can continue from it.
     fn pause(&mut self) {
         match self.mode {
             Mode::Showing { until_secs } => self.seek(until_secs, false),
@@ -292,8 +292,8 @@ impl Engine {
         }
     }
 
-    /// Goes on to the stored moment that is due. Where the stored ones end, the worlds are put at the end of the record,
-    /// of which a keyframe is kept.
+    /// Shows the stored moment that is due. After the last one, the worlds move to the end of the record, which keeps
+    /// a keyframe of it.
     fn advance_show(&mut self) {
         if !self.outbox.wait().is_zero() {
             return;
@@ -307,13 +307,13 @@ impl Engine {
             self.outbox.is_behind = true;
             return;
         }
-        // A run that has been at its end stops there.
+        // A run that has reached its end stops there.
         let half_step_secs = 0.5 * self.history.present.time_step_secs();
         let goes_on = self.stop_at_secs.is_none_or(|stop| end_secs + half_step_secs < stop);
         self.seek(stop_secs.unwrap_or(end_secs), goes_on);
     }
 
-    /// Starts on the way to a recorded moment.
+    /// Starts a seek to a recorded moment.
     fn seek(&mut self, secs: f64, then_plays: bool) {
         self.mode = Mode::Seeking { then_plays };
         self.history.present.seek(secs);
@@ -348,7 +348,7 @@ impl Engine {
         }
     }
 
-    /// Takes the step that is due, and stops where the run is to.
+    /// Takes the step that is due, and pauses at the end of the run.
     fn advance_run(&mut self) {
         if !self.wait_for_step().is_zero() {
             return;
@@ -367,7 +367,7 @@ impl Engine {
         }
     }
 
-    /// Replaces everything by what `source` makes, unless that fails or is given up.
+    /// Replaces everything by the start from `source`, unless that fails or is given up.
     fn load(&mut self, source: Box<dyn StartSource>) {
         self.pause();
         self.refusal = None;
@@ -390,7 +390,7 @@ impl Engine {
         }
     }
 
-    /// True if a command came that makes the present loading pointless. The others wait.
+    /// True if a command makes the present loading pointless. All commands received wait.
     fn is_interrupted(&mut self) -> bool {
         let mut interrupted = (self.gives_up)();
         while let Ok((number, command)) = self.inbox.try_recv() {
@@ -431,7 +431,7 @@ impl Engine {
         }
     }
 
-    /// Hands out the newest state, and wakes whoever waits for it.
+    /// Publishes a frame of the newest state, and wakes its receiver.
     fn publish(&mut self) {
         let shown_secs = match self.mode {
             Mode::Showing { until_secs } => Some(until_secs),

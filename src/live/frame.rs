@@ -1,4 +1,4 @@
-//! What a live run shows of itself: plain data, cheap to copy.
+//! Frames: what a live run shows, as plain data that is cheap to copy.
 
 use std::sync::Arc;
 
@@ -14,85 +14,85 @@ use crate::world::Gravity;
 /// The newest moment of a live run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveFrame {
-    /// Counts frames.
+    /// Number of the frame.
     pub number: u64,
-    /// The last command that this frame knows of.
+    /// Number of the last command that this frame takes into account.
     pub acknowledged: u64,
-    /// Counts loads.
+    /// Number of loads.
     pub loads: u64,
-    /// What the run started from; none before the first load.
+    /// Start of the run; `None` before the first load.
     pub start: Option<Arc<LiveStart>>,
-    /// The worlds, one unless they are compared.
+    /// The worlds; one unless worlds are compared.
     pub worlds: Vec<WorldFrame>,
-    /// What the user calls the present run; empty where nothing.
+    /// The user's name of the present run; may be empty.
     pub name: String,
-    /// Runs that others have taken the place of, the newest last.
+    /// Earlier runs, the newest last.
     pub past: Arc<[PastRun]>,
     /// True if time passes.
     pub playing: bool,
-    /// True if the next step is one that is recorded.
+    /// True if the next step is recorded already.
     pub replaying: bool,
-    /// True if the next step leaves what is recorded behind.
+    /// True if the next step branches off from the record.
     pub branching: bool,
-    /// True if what shows is stored, and nothing is computed.
+    /// True if a stored moment is shown and nothing is computed.
     pub stored: bool,
     /// True if a recorded moment is being computed.
     pub seeking: bool,
-    /// A start that is being made.
+    /// Progress of a start that is being made.
     pub loading: Option<LoadingProgress>,
-    /// Why the last start could not be made.
+    /// Why the last start failed.
     pub refusal: Option<Arc<str>>,
-    /// Simulated time per time on the wall, lately.
+    /// Recent simulated time per wall-clock time.
     pub real_time_factor: f64,
-    /// Steps of all worlds together, lately, 1/s.
+    /// Recent steps of all worlds together, 1/s.
     pub steps_per_sec: f64,
 }
 
 /// One world at one moment.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WorldFrame {
-    /// The world. Before the first step, with the shapes that hold it.
+    /// The state. Before the first step, it includes the shapes that hold the grains.
     pub snapshot: Arc<Snapshot>,
-    /// How its next step is taken.
+    /// The controls of the next step.
     pub controls: Controls,
-    /// Gravity where it is the same everywhere, m/s².
+    /// Gravity, if it is uniform, m/s².
     pub gravity: Option<DVec2>,
-    /// The observables of the whole recording.
+    /// Observables of the whole record.
     pub curve: Curve,
-    /// True if all that is recorded was computed with the settings of the next step, and pulled by no hand.
+    /// True if all recorded steps have the settings of the next step, and no hand pulled a grain.
     pub is_even: bool,
-    /// Simulated time that the recording starts at, s.
+    /// Simulated time at the beginning of the record, s.
     pub recorded_from_secs: f64,
     /// Simulated time of the last recorded step, s.
     pub recorded_secs: f64,
-    /// Steps up to this moment that were not solved to the tolerance.
+    /// Steps up to this moment that did not reach the tolerance.
     pub unconverged_steps: u64,
-    /// Mean time that a step takes lately, ms.
+    /// Recent mean time per step, ms.
     pub step_ms: f64,
-    /// The method that solves it, also where `auto` picks it.
+    /// The method that solves the next step, also if `auto` picks it.
     pub picked_method: Method,
-    /// Substeps of its next step.
+    /// Substeps of the next step.
     pub substeps: u32,
-    /// The longest substep that is surely stable, s, where the method has one.
+    /// Longest substep that is certainly stable, s, if the stepper has such a limit.
     pub critical_time_step_secs: Option<f64>,
-    /// How long two grains of the mean mass that meet push each other, s, where contacts are springs.
+    /// Contact time of two colliding grains of mean mass, s, if contacts are springs.
     pub contact_time_secs: Option<f64>,
-    /// What it takes to break a bond slowly, where the law says so.
+    /// Work of breaking a bond slowly, if the law defines it.
     pub fracture_work: Option<FractureWork>,
-    /// What went wrong up to this moment, and what is most likely to help.
+    /// Alarms up to this moment, with advice.
     pub alarms: Vec<WorldAlarm>,
-    /// Why the run cannot go on from here.
+    /// Why the run cannot continue from here.
     pub failure: Option<Arc<str>>,
 }
 
-/// Something that went wrong in a world.
+/// An alarm of a world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorldAlarm {
-    /// In which way.
+    /// Kind of the alarm.
     pub kind: AlarmKind,
-    /// What happened, since when, and what would have helped under the settings of that step.
+    /// Its message: what happened, since when, and what would have helped under the settings of that step.
     pub text: Arc<str>,
-    /// True if those are no longer the settings.
+    /// True if the settings have changed since then.
     pub is_earlier: bool,
 }
 
@@ -112,14 +112,14 @@ impl LiveFrame {
         self.worlds.iter().all(|world| world.snapshot.observables.step == 0)
     }
 
-    /// True if the scene is held and has not been released.
+    /// True if shapes hold the grains, which have not been released.
     pub fn held(&self) -> bool {
         self.at_start() && self.start.as_ref().is_some_and(|start| !start.held_by.is_empty())
     }
 }
 
 impl WorldFrame {
-    /// The present moment of a world, or one that is stored of it; before the first step in the `held` surroundings.
+    /// The present moment of a world, or a stored one. Before the first step, it has the `held` surroundings.
     pub(super) fn of(
         world: &WorldHistory,
         stored: Option<&StoredMoment>,
@@ -163,14 +163,14 @@ impl WorldFrame {
     }
 }
 
-/// The alarms of a world, but for the one that ends it: that is a failure. Each advises on the settings that it was
-/// raised under.
+/// The alarms of a world except the alarm that ends it, which is its failure. Each advises on the settings under
+/// which it was raised.
 fn alarms(world: &WorldHistory) -> Vec<WorldAlarm> {
     let simulation = &world.simulation;
     let alarms = simulation.alarms().iter().copied().chain(simulation.alarm_on_placed());
     let told = alarms.filter(|alarm| alarm.kind != AlarmKind::NotFinite).map(|alarm| {
         let now = *simulation.settings();
-        // Places are judged by the settings of the next step.
+        // An overlap of placed grains concerns the next step's settings.
         let step = alarm.step + u64::from(alarm.kind == AlarmKind::PlacedInOverlap);
         let then = world.record.settings_of_step(step).unwrap_or(now);
         let text = alarm.message(&then);

@@ -1,4 +1,4 @@
-//! The side of a live run that a window holds.
+//! The window's handle of a live run.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -9,29 +9,29 @@ use super::remote::{Ask, RemoteRun};
 use super::{Command, LiveFrame, LiveOptions};
 use crate::error::{Error, Result};
 
-/// Stack of the solver's thread, bytes: reading a session takes frames of half a megabyte, one for each level of what it
-/// holds, and came to more than the two megabytes that a thread has by itself. What is not used takes no memory.
+/// Stack of the solver's thread, bytes. Reading a session needs half a megabyte per level of its contents, in all
+/// more than the default of two megabytes. Unused stack takes no memory.
 const STACK_BYTES: usize = 32 << 20;
 
-/// A run that goes on by itself. Dropped, it ends after the step that it is computing.
+/// A run on a thread of its own. When it is dropped, it ends after the present step.
 pub struct Live {
     place: Place,
     sent: u64,
 }
 
-/// Where it is computed.
+/// The place of the computation.
 enum Place {
-    /// By a thread of this process.
+    /// A thread of this process.
     Thread { commands: Sender<(u64, Command)>, frames: Output<LiveFrame> },
-    /// By someone who takes bytes and answers in bytes.
+    /// A partner that takes and returns bytes.
     Remote(Box<RemoteRun>),
 }
 
 impl Live {
-    /// Starts the thread, with nothing loaded.
+    /// Starts the thread with nothing loaded.
     ///
     /// # Errors
-    /// Where the system refuses a thread.
+    /// If the system refuses a thread.
     pub fn spawn(options: LiveOptions) -> Result<Self> {
         let (commands, inbox) = channel();
         let (output, frames) = triple_buffer(&LiveFrame::default());
@@ -44,18 +44,18 @@ impl Live {
         Ok(Self { place: Place::Thread { commands, frames }, sent: 0 })
     }
 
-    /// A run that a [`RemoteEngine`](super::RemoteEngine) computes: `ask` brings messages there, and what it posts comes
-    /// in by `inbox`.
+    /// A run that a [`RemoteEngine`](super::RemoteEngine) computes. `ask` sends messages to it, and its replies
+    /// arrive in `inbox`.
     pub fn remote(ask: Ask, inbox: Receiver<Vec<u8>>) -> Self {
         Self { place: Place::Remote(Box::new(RemoteRun::new(ask, inbox))), sent: 0 }
     }
 
-    /// Sends a command and returns its number, which [`LiveFrame::acknowledged`] reaches once the
-    /// command has been carried out (loading and seeking: once they have begun).
+    /// Sends a command and returns its number. [`LiveFrame::acknowledged`] reaches the number when the command has
+    /// been carried out (loading and seeking: when they have begun).
     pub fn send(&mut self, command: Command) -> u64 {
         self.sent += 1;
         match &mut self.place {
-            // The thread ends only with this handle; a panic there shows as a run that stands still.
+            // The thread ends only with this handle. After a panic in it, the run stands still.
             Place::Thread { commands, .. } => {
                 let _ = commands.send((self.sent, command));
             }
@@ -64,7 +64,7 @@ impl Live {
         self.sent
     }
 
-    /// The number of the last command that was sent.
+    /// The number of the last command sent.
     pub fn sent(&self) -> u64 {
         self.sent
     }

@@ -1,5 +1,5 @@
-//! The history of a live run: its worlds with all that is recorded of them, and the runs that it has taken the place of.
-//! Nothing that was computed is lost by a reset, by other worlds, or by going on differently from an earlier moment.
+//! The history of a live run: its worlds with their records, and the earlier runs. A reset, other worlds, or a change
+//! at an earlier moment lose no computed step.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,41 +13,41 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
-/// Most earlier runs that are kept; the oldest go.
+/// Largest number of earlier runs; the oldest is dropped.
 const MOST_PAST: usize = 4;
-/// Of the memory for keyframes, what one of them gets.
+/// An earlier run gets 1/8 of the memory for keyframes.
 const PART_OF_PAST: usize = 8;
-/// Bytes of keyframes of the worlds in a history that is handed out, and of each run before: what is between them is
-/// computed again where it is wanted.
+/// Bytes of keyframes of the present worlds in a history that is handed out, and of each earlier run. Moments between
+/// keyframes can be computed again.
 const KEYFRAME_BYTES: usize = 8 << 20;
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Rows of each of their curves at the most; a row is some 500 bytes in a file.
+/// Largest number of rows of their curves; a row is about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
-/// After this time a tick lets commands in. A world whose time step is far shorter than the leader's takes thousands of
-/// steps to one of the leader's.
+/// Time after which a tick pauses for commands. A world whose time step is far shorter than the leader's takes
+/// thousands of steps per step of the leader.
 const SLICE: Duration = Duration::from_millis(50);
-/// Steps of each world between two words of progress.
+/// Steps of each world between two reports of progress.
 const STEPS_AT_ONCE: u64 = 8;
 
-/// Worlds that run side by side, kept at the same simulated time. The world with the largest time step leads; the others
-/// follow to within half a step of their own.
+/// Worlds side by side at the same simulated time. The world with the largest time step leads; the others follow to
+/// within half a step of their own.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LiveRun {
     #[serde(rename = "tracks")]
     pub worlds: Vec<WorldHistory>,
-    /// What their user calls them; empty where nothing.
+    /// The user's name for the run; may be empty.
     pub name: String,
-    /// What an earlier run is called up by.
+    /// Number by which an earlier run is called up.
     #[serde(skip)]
     number: u64,
-    /// The simulated time that its worlds are on the way to in a tick that takes long, s.
+    /// Simulated time that the worlds approach during a long tick, s.
     #[serde(skip)]
     goal_secs: Option<f64>,
 }
 
-/// Has each world do something, side by side where there are several. Whether all say yes.
+/// Applies `act` to all worlds, in parallel if there are several. Returns true if all calls do.
 fn each(
     worlds: &mut [WorldHistory],
     act: impl Fn(&mut WorldHistory) -> bool + Send + Sync,
@@ -63,12 +63,12 @@ impl LiveRun {
         self.worlds.iter().map(|world| *world.simulation.settings()).collect()
     }
 
-    /// True if the next tick leaves what is recorded behind.
+    /// True if the next tick branches off from the record.
     pub(super) fn branches(&self) -> bool {
         self.worlds.iter().any(WorldHistory::branches)
     }
 
-    /// True if the next tick shows what is recorded.
+    /// True if the next tick repeats recorded steps.
     pub(super) fn replays(&self) -> bool {
         let replays = |world: &WorldHistory| world.record.replays(&world.simulation);
         !self.branches() && self.worlds.iter().any(replays)
@@ -83,8 +83,7 @@ impl LiveRun {
         self.worlds.iter().any(|world| world.failure.is_some())
     }
 
-    /// Keeps about that many bytes of keyframes from now on, and no more stored moments than there is room for, of all
-    /// worlds together.
+    /// Limits the keyframes of all worlds together to about this many bytes, and the stored moments to their memory.
     fn keep_within(&mut self, budget_bytes: usize) {
         let count = self.worlds.len().max(1);
         for world in &mut self.worlds {
@@ -107,7 +106,7 @@ impl LiveRun {
         self.leader().map_or(0.0, WorldHistory::time_step_secs)
     }
 
-    /// Simulated time of the last recorded step of the leader, s.
+    /// Simulated time of the leader's last recorded step, s.
     pub(super) fn recorded_secs(&self) -> f64 {
         self.leader().map_or(0.0, |world| world.record.end_secs())
     }
@@ -116,9 +115,9 @@ impl LiveRun {
         self.worlds.iter().map(WorldHistory::steps).sum()
     }
 
-    /// One step of the leader, and as many of the others as bring them to the same time, or as many of these as come in a
-    /// slice of time: then they are on their way, and the next tick goes on with it. Returns the number of steps of all
-    /// worlds, and whether all succeeded.
+    /// Takes one step of the leader, and the steps that bring the other worlds to the same time. If these take longer
+    /// than a slice, the next tick continues them. Returns the number of steps of all worlds, and true if all
+    /// succeeded.
     pub(super) fn tick(&mut self) -> (u64, bool) {
         let steps_before = self.steps();
         let goal_secs = self.goal_secs.take();
@@ -133,7 +132,7 @@ impl LiveRun {
         (self.steps() - steps_before, all_well)
     }
 
-    /// True while a tick is not at its end.
+    /// True while a tick is unfinished.
     pub(super) fn is_on_its_way(&self) -> bool {
         self.goal_secs.is_some()
     }
@@ -143,12 +142,12 @@ impl LiveRun {
         self.worlds.iter_mut().for_each(|world| world.seek(time_secs));
     }
 
-    /// Takes one step of a seek. Whether all worlds have arrived.
+    /// Takes one step of a seek. Returns true if all worlds have arrived.
     pub(super) fn advance_seek(&mut self) -> bool {
         each(&mut self.worlds, WorldHistory::advance_seek)
     }
 
-    /// The same with fewer keyframes and rows, to be handed out.
+    /// A copy with fewer keyframes and rows, to be handed out.
     fn thinned(&self, bytes: usize, rows: usize) -> Self {
         let mut run = Self { worlds: Vec::new(), ..self.clone() };
         run.worlds = self.worlds.iter().map(WorldHistory::handed_out).collect();
@@ -158,22 +157,22 @@ impl LiveRun {
     }
 }
 
-/// Gives what a run leaves behind back to the system. Of GNU's allocator each thread has memory of its own, which it keeps:
-/// after a hundred runs of some tens of MiB a window had several times what was in use.
+/// Returns the freed memory of a run to the system. With GNU's allocator each thread keeps its freed memory: after a
+/// hundred runs of some tens of MiB a window had several times the memory in use.
 fn return_freed_memory() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    // SAFETY: it touches no memory that is in use, and may be called at any time by any thread.
+    // SAFETY: it touches no memory in use, and any thread may call it at any time.
     unsafe {
         libc::malloc_trim(0);
     }
 }
 
-/// What a window is told of an earlier run.
+/// Summary of an earlier run for a window.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PastRun {
-    /// What it is called up by ([`Command::Return`](super::Command::Return)).
+    /// Number by which the run is called up ([`Command::Return`](super::Command::Return)).
     pub number: u64,
-    /// What its user calls it; empty where nothing.
+    /// The user's name for it; may be empty.
     pub name: String,
     /// Simulated time of its last recorded step, s.
     pub recorded_secs: f64,
@@ -184,11 +183,11 @@ pub struct PastRun {
 /// One world of an earlier run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PastWorld {
-    /// How its last step was taken.
+    /// The controls of its last step.
     pub controls: Controls,
-    /// The observables of all that is recorded.
+    /// Observables of the whole record.
     pub curve: Curve,
-    /// Where it was when it was left.
+    /// The state at which it was left.
     pub snapshot: Arc<Snapshot>,
 }
 
@@ -209,43 +208,43 @@ impl PastRun {
     }
 }
 
-/// All that a live run has come to: the present worlds with the way there, and the runs before. It can be gone on with
-/// at another time, or computed anew from what was done.
+/// Everything that a live run has computed: the present worlds with their records, and the earlier runs. It can be
+/// continued later, or computed again from its changes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunHistory {
     #[serde(rename = "worlds")]
     pub(super) present: LiveRun,
-    /// The oldest first.
+    /// Earlier runs, the oldest first.
     past: Vec<LiveRun>,
-    /// What a window is told of them.
+    /// Summaries of the earlier runs for a window.
     #[serde(skip)]
     told: Arc<[PastRun]>,
-    /// Counts the runs that were kept.
+    /// Number of runs that have been kept.
     #[serde(skip)]
     count: u64,
     #[serde(skip)]
     recording_bytes: usize,
 }
 
-/// How a world comes about from a start.
+/// Recipe for a world from a start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldPlan {
-    /// Those of its first step.
+    /// Settings of its first step.
     pub settings: Settings,
-    /// Each with the number of the step after which it is made, in their order.
+    /// Changes of the settings, in order, each with the number of the step after which it is made.
     pub changes: Vec<(u64, Settings)>,
-    /// How many steps it takes.
+    /// Number of steps.
     pub steps: u64,
 }
 
 impl RunHistory {
-    /// One without worlds, with so much memory for keyframes.
+    /// A history without worlds, with this much memory for keyframes.
     pub(super) fn new(recording_bytes: usize) -> Self {
         Self { recording_bytes, ..Self::default() }
     }
 
-    /// Forgets everything, and goes on with what another has come to.
+    /// Replaces this history by another one.
     pub(super) fn take_up(&mut self, other: Self) {
         self.clear();
         for run in other.past {
@@ -262,7 +261,7 @@ impl RunHistory {
         self.tell();
     }
 
-    /// Puts worlds at a start, one for each of these settings. The present ones are kept.
+    /// Puts worlds at a start, one for each of these settings. The present worlds are kept.
     pub(super) fn restart(&mut self, start: &Simulation, tally: Tally, all: &[Settings]) {
         let world =
             |settings: &Settings| WorldHistory::new(start, tally, settings, self.recording_bytes);
@@ -272,7 +271,7 @@ impl RunHistory {
         self.put_in_place(run);
     }
 
-    /// Goes back to an earlier run; the present one is kept. Whether there is such a run.
+    /// Goes back to an earlier run, and keeps the present one. Returns false if there is no such run.
     pub(super) fn go_back(&mut self, number: u64) -> bool {
         let Some(index) = self.past.iter().position(|run| run.number == number) else {
             return false;
@@ -290,11 +289,11 @@ impl RunHistory {
         return_freed_memory();
     }
 
-    /// Keeps the present run as it is, where its next tick leaves what is recorded behind.
+    /// Keeps the present run as it is, if its next tick branches off from the record.
     pub(super) fn keep_before_tick(&mut self) {
         if self.present.branches() {
             let mut before = self.present.clone();
-            // What was recorded had other settings than those that leave it.
+            // The recorded steps had other settings than those that branch off.
             for world in &mut before.worlds {
                 world.record.restore_controls(&mut world.simulation);
             }
@@ -302,7 +301,7 @@ impl RunHistory {
         }
     }
 
-    /// Has a hand change a world. Where that leaves what is recorded behind, it is kept.
+    /// Changes a world by hand. If that branches off from the record, the run is kept.
     pub(super) fn edit(&mut self, world: usize, edit: Edit) -> Result<()> {
         let Some(edited) = self.present.worlds.get(world) else { return Ok(()) };
         let branches = edited.record.is_before_end(&edited.simulation);
@@ -312,13 +311,13 @@ impl RunHistory {
         Ok(())
     }
 
-    /// Keeps the present run as it was before it branched off: from now on it is another one.
+    /// Keeps the run as it was before it branched off. The present run is now another one, without a name.
     fn keep_copy(&mut self, before: LiveRun) {
         self.keep(before);
         self.present.name.clear();
     }
 
-    /// Keeps a run of which something is recorded, with a part of the memory for keyframes.
+    /// Keeps a run that has recorded steps, with a part of the memory for keyframes.
     fn keep(&mut self, mut run: LiveRun) {
         if !run.worlds.iter().any(|world| world.record.has_steps()) {
             return;
@@ -334,7 +333,7 @@ impl RunHistory {
         self.tell();
     }
 
-    /// Calls an earlier run, or the present one, by a name.
+    /// Names an earlier run, or the present one.
     pub(super) fn name(&mut self, number: Option<u64>, name: String) {
         match number {
             None => self.present.name = name,
@@ -346,7 +345,7 @@ impl RunHistory {
         }
     }
 
-    /// What a window is told of the earlier runs, the newest last.
+    /// Summaries of the earlier runs for a window, the newest last.
     pub(super) fn told(&self) -> Arc<[PastRun]> {
         Arc::clone(&self.told)
     }
@@ -355,7 +354,7 @@ impl RunHistory {
         self.told = self.past.iter().map(PastRun::of).collect();
     }
 
-    /// The same with fewer keyframes and rows, to be handed out. A run before whose state is no longer finite is left out.
+    /// A copy with fewer keyframes and rows, to be handed out, without earlier runs whose state is no longer finite.
     pub(super) fn thinned(&self) -> Self {
         let kept = self.past.iter().filter(|run| !run.has_failed());
         Self {
@@ -365,11 +364,11 @@ impl RunHistory {
         }
     }
 
-    /// That of worlds which are computed here, side by side, from a state and the sums over the steps before it. `tell`
-    /// hears how far it has come, and ends it by returning false.
+    /// The history of worlds that are computed here in parallel, from a state and the sums over the steps before it.
+    /// `tell` is called with the progress, and ends the computation by returning false.
     ///
     /// # Errors
-    /// Names the first setting that is refused, or says that it was given up.
+    /// Names the first refused setting, or says that the computation was given up.
     pub fn computed(
         start: &Simulation,
         tally: Tally,
@@ -405,7 +404,7 @@ impl RunHistory {
         &self.present.worlds
     }
 
-    /// True if one that was read holds together.
+    /// True if a history that was read is consistent.
     pub fn is_sound(&self) -> bool {
         let is_sound = |run: &LiveRun| {
             !run.worlds.is_empty() && run.worlds.iter().all(|world| world.record.is_sound())
@@ -413,13 +412,13 @@ impl RunHistory {
         is_sound(&self.present) && self.past.iter().all(is_sound)
     }
 
-    /// Why one of its worlds cannot go on.
+    /// Why one of its worlds cannot continue.
     pub fn failure(&self) -> Option<&str> {
         self.present.worlds.iter().find_map(|world| world.failure.as_deref())
     }
 }
 
-/// Takes some steps of a plan, with its changes. Whether there are more.
+/// Takes some steps of a plan, with its changes. Returns true if more steps remain.
 fn advance(world: &mut WorldHistory, plan: &WorldPlan) -> Result<bool> {
     for _ in 0..STEPS_AT_ONCE {
         let step = world.steps();

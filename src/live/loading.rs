@@ -7,26 +7,26 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Snapshot;
 
-/// Hears how far a start has come. False where it is given up.
+/// Receives the progress of a start. Returns false to give it up.
 pub type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
 
-/// How far a long preparation has come.
+/// Progress of a long preparation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadingProgress {
-    /// 0 … 1.
+    /// Completed fraction, 0 … 1.
     pub part: f32,
-    /// One line.
+    /// Description of the progress, one line.
     pub text: String,
-    /// How what is being made looks, where there is anything to see.
+    /// The present state of what is being made, if it can be shown.
     pub preview: Option<Preview>,
 }
 
-/// What is being made, at one moment. It is shown, and no more: the worlds stay as they are.
+/// A moment of what is being made. It is only shown; the worlds do not change.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preview {
     /// The moment.
     pub snapshot: Arc<Snapshot>,
-    /// Lower left and upper right corner of what there is to see, m.
+    /// Lower left and upper right corner of the view, m.
     pub view: [DVec2; 2],
 }
 

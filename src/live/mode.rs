@@ -1,28 +1,28 @@
-//! What the solver's thread is at.
+//! The mode of the solver's thread.
 
 use super::LoadingProgress;
 
-/// What the thread is at.
+/// The present activity of the thread.
 #[derive(Clone, Debug)]
 pub(super) enum Mode {
     Paused,
-    /// Time passes: steps are computed as they are due.
+    /// Time passes, and steps are computed when they are due.
     Computing,
-    /// Time passes within the record: stored moments are shown up to this simulated time, s, and nothing is computed, so
-    /// that a slow run is shown fluently. The worlds stay where they are meanwhile.
+    /// Time passes within the record: the stored moments up to this simulated time, s, are shown and nothing is
+    /// computed, so that a slow run is shown smoothly. The worlds do not change meanwhile.
     Showing {
         until_secs: f64,
     },
-    /// A recorded moment is computed, after which time passes or stands still.
+    /// A recorded moment is being computed; then time passes or stops.
     Seeking {
         then_plays: bool,
     },
-    /// A step that takes longer than a slice is brought to its end, and then as many more are taken as were asked for
-    /// meanwhile, after which time stands still.
+    /// A step that takes longer than a slice is being completed. Then the further requested steps are taken, and time
+    /// stops.
     Stepping {
         more: u64,
     },
-    /// A start is made.
+    /// A start is being made.
     Loading(LoadingProgress),
 }
 

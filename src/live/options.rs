@@ -2,20 +2,20 @@
 
 use std::time::Duration;
 
-/// What the solver's thread is to do for its window.
+/// Options of the solver's thread.
 pub struct LiveOptions {
     /// Called on the solver's thread after each new frame.
     pub wake: Box<dyn Fn() + Send>,
-    /// Asked while a start is made: true where that is to be given up, though no command could come in meanwhile.
+    /// Called while a start is made: returns true to give it up, although no command can arrive meanwhile.
     pub gives_up: Box<dyn Fn() -> bool + Send>,
-    /// Least time between two frames while the run goes on.
+    /// Shortest time between two frames of a running simulation.
     pub frame_interval: Duration,
-    /// Memory for keyframes, of all worlds together.
+    /// Memory for keyframes of all worlds together, bytes.
     pub recording_bytes: usize,
 }
 
 impl Default for LiveOptions {
-    /// Nobody to wake, 60 frames a second, 96 MiB.
+    /// No callback, 60 frames per second, 96 MiB.
     fn default() -> Self {
         Self {
             wake: Box::new(|| {}),

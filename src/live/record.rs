@@ -1,9 +1,9 @@
-//! What is recorded of a world so that any of its moments can be computed again, bit for bit.
+//! The record of a world, from which each of its moments can be computed again bitwise.
 //!
-//! A simulation is a function of its state and its settings, and a clone goes on as the original
-//! would. So a record is some clones, the keyframes, and every change of the settings; a moment
-//! is the keyframe before it and the steps from there. Where memory runs out, every second keyframe
-//! goes: the whole run stays within reach, at the price of more steps to get anywhere.
+//! A simulation is a function of its state and its settings, and a clone continues like the original. So a record
+//! consists of some clones (keyframes) and all changes of the settings. A moment is computed from the keyframe before
+//! it. If memory runs out, every second keyframe is dropped: the whole run stays reachable, with more steps from the
+//! nearest keyframe.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -13,56 +13,56 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Pull, RunEnding, Settings, Simulation, Tally};
 
-/// All that can be changed between two steps.
+/// Everything that can change between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Controls {
-    /// How the next step is taken.
+    /// Settings of the next step.
     pub settings: Settings,
-    /// Spring on a grain.
+    /// A spring on a grain.
     pub pull: Option<Pull>,
 }
 
 impl Controls {
-    /// Those of a simulation's next step.
+    /// The controls of a simulation's next step.
     pub(super) fn of(simulation: &Simulation) -> Self {
         Self { settings: *simulation.settings(), pull: simulation.pull() }
     }
 }
 
-/// A moment from which on other controls are in force.
+/// A change of the controls.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ControlsChange {
-    /// The step before the first that they are in force for.
+    /// Number of the last step before the change.
     pub after_step: u64,
     /// Simulated time of that step, s.
     pub time_secs: f64,
-    /// What is in force up to the next change.
+    /// Controls until the next change.
     pub controls: Controls,
 }
 
-/// What a hand did between two steps.
+/// A change by hand between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandEdit {
-    /// The step before.
+    /// Number of the step before it.
     pub after_step: u64,
-    /// What was done.
+    /// The change.
     pub edit: Edit,
 }
 
-/// Steps between keyframes at first.
+/// Initial number of steps between keyframes.
 const FIRST_SPACING: u64 = 32;
 
-/// The recorded part of a world's run. A clone shares its keyframes, so it is cheap to hand out: whoever wants the
-/// moments between them steps by itself.
+/// The record of a world's run. A clone shares its keyframes, so it is cheap to hand out. Its receiver computes the
+/// moments between them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorldRecord {
     keyframes: Vec<Keyframe>,
     changes: Vec<ControlsChange>,
-    /// In their order; a simulation knows how many of them it has seen.
+    /// In order; a simulation knows how many of them it contains.
     edits: Vec<HandEdit>,
     spacing: u64,
     budget_bytes: usize,
@@ -84,8 +84,8 @@ impl Keyframe {
 }
 
 impl WorldRecord {
-    /// A recording that starts with this state, with the sums of steps before it, and keeps about
-    /// `budget_bytes` of keyframes.
+    /// A record that starts with this state and the sums over the steps before it, with about `budget_bytes` of
+    /// keyframes.
     pub(super) fn new(start: &Simulation, tally: Tally, budget_bytes: usize) -> Self {
         Self {
             keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
@@ -103,13 +103,13 @@ impl WorldRecord {
         self.end_secs
     }
 
-    /// The state that it starts with.
+    /// The first recorded state.
     pub fn start(&self) -> &Simulation {
-        // A recording is made with its first keyframe, and thinning keeps that.
+        // A record is created with its first keyframe, and thinning keeps that one.
         &self.keyframes[0].simulation
     }
 
-    /// Notes a state that is about to take a step. What was recorded after it is forgotten.
+    /// Records a state that is about to take a step. Later records are removed.
     pub(super) fn before_step(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
         self.cut(step, self.edits_of(simulation));
@@ -135,7 +135,7 @@ impl WorldRecord {
         }
     }
 
-    /// Forgets what came after a step, before which a hand had done so much.
+    /// Removes everything after a step, and all but the first `edits` changes by hand.
     fn cut(&mut self, step: u64, edits: usize) {
         if self.end_step > step {
             let begun_with = self.start().edits();
@@ -149,7 +149,7 @@ impl WorldRecord {
         self.edits.truncate(edits);
     }
 
-    /// Notes that a hand has just changed a state. What was recorded after it is forgotten.
+    /// Records a change by hand of this state. Later records are removed.
     pub(super) fn edited(&mut self, simulation: &Simulation, edit: Edit) {
         let after_step = simulation.observables().step;
         self.cut(after_step, self.edits_of(simulation).saturating_sub(1));
@@ -157,17 +157,17 @@ impl WorldRecord {
         self.edits.push(HandEdit { after_step, edit });
     }
 
-    /// How much of that a recorded state has seen.
+    /// Number of this record's changes by hand that a state contains.
     fn edits_of(&self, simulation: &Simulation) -> usize {
         simulation.edits().saturating_sub(self.start().edits())
     }
 
-    /// What a hand has done to the world.
+    /// All changes of the world by hand.
     pub fn edits(&self) -> &[HandEdit] {
         &self.edits
     }
 
-    /// Keeps the state at the end of what is recorded, so that it need not be computed again.
+    /// Keeps a keyframe of the state at the end of the record, so that it need not be computed again.
     pub(super) fn keep_end(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
         if step == self.end_step && self.last_keyframe() < step {
@@ -175,7 +175,7 @@ impl WorldRecord {
         }
     }
 
-    /// Notes a state that has just taken a step.
+    /// Records a state that has just taken a step.
     pub(super) fn after_step(&mut self, simulation: &Simulation) {
         self.end_step = simulation.observables().step;
         self.end_secs = simulation.time_secs();
@@ -195,7 +195,7 @@ impl WorldRecord {
         self.keyframes.len() < 3 || self.keyframes.len() * memory_bytes(newest) <= self.budget_bytes
     }
 
-    /// Keeps about that many bytes of keyframes from now on.
+    /// Limits the keyframes to about this many bytes.
     pub(super) fn keep_within(&mut self, budget_bytes: usize) {
         self.budget_bytes = budget_bytes;
         while !self.is_within_budget() {
@@ -203,7 +203,8 @@ impl WorldRecord {
         }
     }
 
-    /// True if one that was read holds together: it begins, goes on in time, and ends after all of it.
+    /// True if a record that was read is consistent: it has a beginning, its steps increase, and it ends after all of
+    /// them.
     pub(super) fn is_sound(&self) -> bool {
         let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
         let last = self.keyframes.last().map(Keyframe::step);
@@ -215,19 +216,19 @@ impl WorldRecord {
             && changes.into_iter().all(|pair| pair[0].after_step < pair[1].after_step)
     }
 
-    /// True if anything is recorded.
+    /// True if any step is recorded.
     pub(super) fn has_steps(&self) -> bool {
         self.end_step > self.start().observables().step
     }
 
-    /// True if every recorded step was taken with these settings, and pulled by no hand.
+    /// True if all recorded steps have these settings, and no hand acted.
     pub(super) fn is_all_with(&self, settings: &Settings) -> bool {
         let all_along = Controls { settings: *settings, pull: None };
         self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)
     }
 
-    /// True if the next step of a simulation is a recorded one. A hand that is there now and was not then, or
-    /// another one, makes a difference; one that is not there does not, as it went when that moment was sought.
+    /// True if the next step of a simulation is a recorded one. A pull that was not recorded makes a difference. A
+    /// missing pull does not, because a seek removes it.
     pub(super) fn replays(&self, simulation: &Simulation) -> bool {
         let step = simulation.observables().step;
         let same = |recorded: &Controls| {
@@ -237,7 +238,7 @@ impl WorldRecord {
         self.is_before_end(simulation) && self.controls_after(step).is_some_and(same)
     }
 
-    /// True if more is recorded than what led to a state.
+    /// True if steps after a state are recorded.
     pub(super) fn is_before_end(&self, simulation: &Simulation) -> bool {
         simulation.observables().step < self.end_step
     }
@@ -250,7 +251,7 @@ impl WorldRecord {
         (&keyframe.simulation, keyframe.tally)
     }
 
-    /// True if a recorded state is the one nearest to a simulated time, or after it, or the last.
+    /// True if a recorded state is the one nearest to a simulated time, or later, or the last one.
     pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
         let step = simulation.observables().step;
         let controls = self.controls_after(step).copied();
@@ -262,7 +263,7 @@ impl WorldRecord {
         time_secs + 0.5 * time_step_secs >= goal_secs || step >= self.end_step
     }
 
-    /// Gives a recorded state the controls with which its next step was recorded, and does what a hand did before it.
+    /// Gives a recorded state the controls of its next recorded step, and applies the changes by hand before it.
     pub(super) fn restore_controls(&self, simulation: &mut Simulation) {
         let step = simulation.observables().step;
         let made = self.edits.iter().skip(self.edits_of(simulation));
@@ -277,18 +278,18 @@ impl WorldRecord {
         }
     }
 
-    /// The settings that a recorded step was taken with.
+    /// The settings of a recorded step.
     pub(super) fn settings_of_step(&self, step: u64) -> Option<Settings> {
         Some(self.controls_after(step.checked_sub(1)?)?.settings)
     }
 
-    /// The controls of the step that follows `step`; none before anything was recorded.
+    /// The controls of the step after `step`; `None` before the first recorded change.
     pub(super) fn controls_after(&self, step: u64) -> Option<&Controls> {
         let count = self.changes.partition_point(|change| change.after_step <= step);
         count.checked_sub(1).map(|index| &self.changes[index].controls)
     }
 
-    /// The changes from a step on that steps up to a simulated time were taken with.
+    /// The changes from a step on that affect steps up to a simulated time.
     pub fn changes(
         &self,
         from_step: u64,
@@ -302,12 +303,12 @@ impl WorldRecord {
         })
     }
 
-    /// Computes the moments nearest to two simulated times, and all between them, bit for bit as they were.
-    /// `each` is called with every state on the way, in the order of time, and whether it is one of those; its
-    /// settings are those of the step that led there. It can end this.
+    /// Computes the moments between two simulated times again, bitwise. `each` gets all states in order of time, from
+    /// the keyframe before, with true if a state is between the two times. Each state has the settings of the step
+    /// that led to it. `each` can end the replay.
     ///
     /// # Errors
-    /// What `each` fails with.
+    /// Errors of `each`.
     pub fn replay(
         &self,
         [from_secs, until_secs]: [f64; 2],
@@ -317,7 +318,7 @@ impl WorldRecord {
         let index = self.keyframes.partition_point(is_before).saturating_sub(1);
         let mut simulation = Simulation::clone(&self.keyframes[index].simulation);
         if simulation.observables().step == 0 {
-            // No step led to the start: it has the settings of the first.
+            // No step led to the start, so it gets the settings of the first step.
             self.restore_controls(&mut simulation);
         }
         loop {
@@ -338,10 +339,10 @@ impl WorldRecord {
     }
 }
 
-/// About how much memory a clone of a simulation takes.
+/// Approximate memory of a clone of a simulation, bytes.
 fn memory_bytes(simulation: &Simulation) -> usize {
-    // Measured on piles of 138 to 10,000 grains: the lists of grains, bodies and candidates come to
-    // some 500 bytes a grain, rows and impulses to some 250 a contact, fixed shapes to some 100.
+    // Measured on piles of 138 to 10,000 grains: lists of grains, bodies and candidates take about 500 bytes per
+    // grain, rows and impulses about 250 per contact, fixed shapes about 100 each.
     let world = simulation.world();
     let fixed = world.fixed_discs.len() + world.boundaries.len();
     4096 + 500 * world.grains.len() + 250 * simulation.contacts().contacts().len() + 100 * fixed

@@ -1,9 +1,9 @@
-//! A live run that is computed where no memory is shared with its window, as in the worker of a page: both sides as
-//! they read and write bytes.
+//! A live run without memory shared with its window, as in a browser's worker: both sides as readers and writers of
+//! bytes.
 //!
-//! Commands go there as they are; what makes a start goes as data, and who takes something down stays on this side until
-//! it comes. Frames come back, the newest alone: the next is made once this side has seen the last. Of what frames share
-//! with the one before, only what is new is sent.
+//! Commands are sent as they are. Sources of starts are sent as data, and receivers of histories wait on the window's
+//! side for the reply. Only the newest frame comes back, and the next one is made after the window has seen it. A
+//! frame is sent as its difference from the previous one.
 
 use std::collections::HashMap;
 use std::marker::PhantomData;
@@ -25,10 +25,10 @@ use super::{
 use crate::Instant;
 use crate::error::{Error, Result};
 
-/// A frame that was not seen is followed by another after this time: while a start is made nothing is taken in.
+/// Time after which another frame follows an unseen one. While a start is made, the engine receives no messages.
 const UNSEEN_INTERVAL: Duration = Duration::from_millis(100);
 
-/// What a window says. Numbers are those of commands.
+/// A message from the window. The numbers are those of commands.
 #[derive(Serialize, Deserialize)]
 enum Request {
     Command(u64, Command),
@@ -39,7 +39,7 @@ enum Request {
     Seen,
 }
 
-/// What comes back.
+/// A message to the window.
 #[derive(Serialize, Deserialize)]
 enum Reply {
     Frame(Box<FrameChange>),
@@ -47,10 +47,10 @@ enum Reply {
     TakenAll(u64, Box<LiveStart>),
 }
 
-/// A frame, by what it has that the one before had not.
+/// A frame as its difference from the previous one.
 #[derive(Serialize, Deserialize)]
 struct FrameChange {
-    /// Without what follows.
+    /// The frame without the parts below.
     frame: LiveFrame,
     start: Option<Arc<LiveStart>>,
     past: Option<Arc<[PastRun]>>,
@@ -83,16 +83,16 @@ impl FrameChange {
     }
 }
 
-/// Who waits for what is taken down.
+/// The receiver of a history.
 enum Waiting {
     World(Taker),
     All(StartTaker),
 }
 
-/// What brings bytes to whoever computes, and says whether a start that is being made is to be given up for them.
+/// Sends bytes to the engine. The flag is true if the start that is being made is to be given up.
 pub type Ask = Box<dyn FnMut(Vec<u8>, bool)>;
 
-/// The window's side.
+/// The window's side of a remote run.
 pub(super) struct RemoteRun {
     ask: Ask,
     inbox: Receiver<Vec<u8>>,
@@ -160,13 +160,13 @@ impl RemoteRun {
     }
 }
 
-/// What brings bytes to the window. It is called by the engine itself while a start is made.
+/// Sends bytes to the window. The engine itself calls it while a start is made.
 pub type Post = Box<dyn FnMut(Vec<u8>) + Send>;
 
-/// Posts frames as they are due.
+/// Posts frames when they are due.
 struct FramePoster {
     frames: Output<LiveFrame>,
-    /// What was posted last.
+    /// The last posted frame.
     posted: LiveFrame,
     posted_at: Instant,
     is_seen: bool,
@@ -187,14 +187,14 @@ impl FramePoster {
     }
 
     fn reply(&mut self, reply: &Reply) {
-        // Plain data: there is nothing in it that could not be written.
+        // Plain data can always be written.
         if let Ok(bytes) = to_bytes(reply) {
             (self.post)(bytes);
         }
     }
 }
 
-/// The side that computes: an engine that never sleeps by itself. `S` makes its starts.
+/// The computing side: an engine that never sleeps. `S` is the type of its sources of starts.
 pub struct RemoteEngine<S> {
     engine: Engine,
     commands: Sender<(u64, Command)>,
@@ -203,7 +203,7 @@ pub struct RemoteEngine<S> {
 }
 
 impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
-    /// One with nothing loaded, whose replies go to `post`; it wakes nobody else.
+    /// An engine with nothing loaded, which sends its replies to `post`.
     pub fn new(post: Post, options: LiveOptions) -> Self {
         let (commands, inbox) = channel();
         let (output, frames) = triple_buffer(&LiveFrame::default());
@@ -220,10 +220,10 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
         Self { engine, commands, poster, sources: PhantomData }
     }
 
-    /// Takes in a message of the window.
+    /// Handles a message of the window.
     ///
     /// # Errors
-    /// Where it is none.
+    /// If the message is invalid.
     pub fn receive(&mut self, message: &[u8]) -> Result<()> {
         let poster = Arc::clone(&self.poster);
         let (number, command) = match from_bytes(message)? {
@@ -250,12 +250,12 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
                 return Ok(());
             }
         };
-        // The engine has the other end.
+        // The engine has the other end, so sending cannot fail.
         let _ = self.commands.send((number, command));
         Ok(())
     }
 
-    /// Does what is due. Returns how long nothing will be, and nothing where only a message changes that.
+    /// Does what is due. Returns the time until something is due again; `None` if only a message changes that.
     pub fn turn(&mut self) -> Option<Duration> {
         self.engine.turn(false);
         self.engine.wait()

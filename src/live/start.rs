@@ -1,4 +1,4 @@
-//! The state that a run starts from, and sources that make one.
+//! The initial state of a run, and its sources.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -11,45 +11,45 @@ use crate::scene::Scene;
 use crate::sim::{Settings, Simulation, Tally};
 use crate::world::{Boundary, Physics};
 
-/// What makes a start, as data, so that it can be sent to where the run is computed.
+/// A source of a start. It is data, so that it can be sent to the place of the computation.
 pub trait StartSource: Send + 'static {
-    /// Makes it where the run is computed. Gives up with an error where `tell` returns false.
+    /// Makes the start. Gives up with an error if `tell` returns false.
     ///
     /// # Errors
-    /// Says why there is none.
+    /// Says why there is no start.
     fn make(self: Box<Self>, tell: Tell<'_>) -> Result<LiveStart>;
 
-    /// It as bytes, from which its kind reads it back.
+    /// The source as bytes, from which its type can be read.
     ///
     /// # Errors
-    /// Where it cannot be sent.
+    /// If it cannot be sent.
     fn to_bytes(&self) -> Result<Vec<u8>>;
 }
 
-/// The state that a run starts from.
+/// The initial state of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LiveStart {
-    /// The scene, before anything moves. The run pauses once at its duration; played on, it goes further.
+    /// The scene in its initial state. The run pauses once at its duration, and can be continued.
     pub scene: Scene,
-    /// What opens that scene again.
+    /// The configuration that opens the scene again.
     #[serde(with = "as_json")]
     pub config: Config,
-    /// How the window was arranged that saved it, in that window's own words; none where none did.
+    /// Arrangement of the window that saved the start, in that window's own form; `None` without a window.
     pub window: Option<String>,
-    /// The world at t = 0, or where a saved run goes on.
+    /// The state at t = 0, or that of a saved run.
     pub simulation: Simulation,
-    /// Sums over the steps before that.
+    /// Sums over the steps before the start.
     pub tally: Tally,
-    /// Shapes that are drawn before the first step: what holds a state that is at rest.
+    /// Shapes that hold a state at rest, drawn before the first step.
     pub held_by: Vec<Boundary>,
-    /// Lower left and upper right corner of what pictures show, m.
+    /// Lower left and upper right corner of the view, m.
     pub view: [DVec2; 2],
-    /// True if it is one of a heap on level ground, of which slump tells.
+    /// True if the scene is a heap on level ground, whose slump is meaningful.
     pub slumps: bool,
-    /// The settings of the worlds that are side by side at first; none for one world with those of the simulation.
+    /// Settings of the initial worlds side by side; empty for one world with the settings of the simulation.
     pub worlds: Vec<Settings>,
-    /// What it has come to, where it does not begin here; then `worlds` means nothing.
+    /// History of a run that continues. `worlds` has no effect then.
     #[serde(rename = "record")]
     pub history: Option<RunHistory>,
 }
@@ -66,7 +66,7 @@ impl LiveStart {
     }
 }
 
-/// One that is ready.
+/// A start that is already made.
 impl StartSource for LiveStart {
     fn make(self: Box<Self>, _: Tell<'_>) -> Result<LiveStart> {
         Ok(*self)
@@ -77,7 +77,7 @@ impl StartSource for LiveStart {
     }
 }
 
-/// A config reads its options by name, which binary forms do not have.
+/// Serialises a config as JSON, because it reads its options by name, which binary forms lack.
 pub(crate) mod as_json {
     use serde::de::Error as _;
     use serde::ser::Error as _;

@@ -1,12 +1,12 @@
-//! Moments of a run that are stored as they were shown, so that play within the record computes nothing.
+//! Moments of a run as they were shown, stored so that playing within the record computes nothing.
 
 use std::sync::Arc;
 
 use crate::sim::{Simulation, Snapshot, Tally};
 use crate::world::Gravity;
 
-/// Memory for the stored moments of all worlds together. Where it runs out, every second one goes: some 2,000 of 138
-/// grains find room, and 30 of 10,000.
+/// Memory for the stored moments of all worlds together, bytes. If it runs out, every second moment is dropped. It
+/// holds about 2,000 moments of 138 grains, or 30 of 10,000.
 pub(super) const STORED_BYTES: usize = 64 << 20;
 
 /// A moment as it was shown.
@@ -29,11 +29,11 @@ impl StoredMoment {
     }
 }
 
-/// The stored moments of a world, in the order of time.
+/// The stored moments of a world, in order of time.
 #[derive(Clone, Debug)]
 pub(super) struct StoredMoments {
     moments: Vec<StoredMoment>,
-    /// Only steps whose number is a multiple of this are stored.
+    /// Only steps whose number is a multiple of the stride are stored.
     stride: u64,
     bytes: usize,
     most_bytes: usize,
@@ -46,8 +46,7 @@ impl Default for StoredMoments {
 }
 
 impl StoredMoments {
-    /// Stores a moment that a step has just led to. What was stored after it is forgotten, unless the step
-    /// `is_recorded` already.
+    /// Stores the moment after a step. Later moments are removed, unless the step `is_recorded`.
     pub(super) fn store(&mut self, simulation: &Simulation, tally: &Tally, is_recorded: bool) {
         let now = simulation.observables().step;
         let earlier = self.moments.partition_point(|moment| moment.step() < now);
@@ -65,7 +64,7 @@ impl StoredMoments {
         self.thin();
     }
 
-    /// Keeps no more than that from now on.
+    /// Limits the memory of the moments.
     pub(super) fn keep_within(&mut self, most_bytes: usize) {
         self.most_bytes = most_bytes;
         self.thin();
@@ -79,7 +78,7 @@ impl StoredMoments {
         }
     }
 
-    /// Forgets what is stored of later steps, and of this one, which no longer looks as it did.
+    /// Removes the moments of this and later steps, because they have changed.
     pub(super) fn forget_from(&mut self, first: u64) {
         self.retain(|step| step < first);
     }
@@ -89,7 +88,7 @@ impl StoredMoments {
         self.bytes = self.moments.iter().map(StoredMoment::bytes).sum();
     }
 
-    /// The last moment that is no later than a simulated time, s.
+    /// The last moment at or before a simulated time, s.
     pub(super) fn at(&self, secs: f64) -> Option<&StoredMoment> {
         let is_there = |moment: &StoredMoment| moment.snapshot.observables.time_secs <= secs;
         self.moments.get(self.moments.partition_point(is_there).checked_sub(1)?)
@@ -125,7 +124,7 @@ mod tests {
             stride > 1 && steps.windows(2).all(|pair| pair[1] - pair[0] == stride),
             "{steps:?}"
         );
-        // What comes later finds no more room either.
+        // Later moments do not get more memory either.
         for _ in 0..40 {
             simulation.step().unwrap();
             stored.store(&simulation, &Tally::default(), false);

@@ -1,4 +1,4 @@
-//! One world of a live run: where it is, what is recorded of it, and its curve.
+//! One world of a live run: its present state, its record and its curve.
 
 use std::sync::Arc;
 
@@ -10,36 +10,36 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Tally};
 
-/// Weight of the newest step in the mean time a step takes.
+/// Weight of the newest step in the mean time per step.
 const NEWEST: f64 = 0.05;
 
-/// One world of a live run. A clone shares what is recorded.
+/// One world of a live run. A clone shares the record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorldHistory {
-    /// The present moment.
+    /// The present state.
     pub simulation: Simulation,
-    /// All that is recorded, before and after the present moment.
+    /// The record before and after the present moment.
     #[serde(rename = "recording")]
     pub record: WorldRecord,
-    /// The observables of all that is recorded.
+    /// Observables of the whole record.
     pub curve: Curve,
-    /// What of the record can be shown without computing.
+    /// Stored moments, which can be shown without computing.
     #[serde(skip)]
     pub(super) stored: StoredMoments,
     /// Sums over the steps up to the present moment.
     pub tally: Tally,
     #[serde(skip)]
     pub(super) step_secs: f64,
-    /// Why the run cannot go on from the present moment.
+    /// Why the run cannot continue from the present moment.
     pub failure: Option<Arc<str>>,
-    /// The simulated time that a seek is on its way to, s.
+    /// Simulated time that a seek approaches, s.
     #[serde(skip)]
     goal_secs: Option<f64>,
 }
 
 impl WorldHistory {
-    /// A world at a start, with the sums of steps before it.
+    /// A world at a start, with the sums over the steps before it.
     pub(super) fn new(
         start: &Simulation,
         tally: Tally,
@@ -47,7 +47,7 @@ impl WorldHistory {
         budget_bytes: usize,
     ) -> Self {
         let mut simulation = start.clone();
-        // Settings are checked where they are made; what is refused here stays as the start has it.
+        // Settings are checked where they are made. If one is refused here, the start's setting stays.
         let _ = simulation.change(*settings);
         let mut curve = Curve::default();
         curve.push(*simulation.observables());
@@ -72,12 +72,12 @@ impl WorldHistory {
         self.simulation.parameters().time_step_secs
     }
 
-    /// True if its next step leaves what is recorded behind.
+    /// True if the next step branches off from the record.
     pub(super) fn branches(&self) -> bool {
         self.record.is_before_end(&self.simulation) && !self.record.replays(&self.simulation)
     }
 
-    /// Takes a step and records it, unless it is one that is recorded. Whether it succeeded.
+    /// Takes a step, and records it unless it is recorded already. Returns false on failure.
     pub(super) fn step(&mut self) -> bool {
         if self.failure.is_some() {
             return false;
@@ -102,7 +102,7 @@ impl WorldHistory {
         self.failure.is_none()
     }
 
-    /// Takes a step that is recorded, as it was. Whether it succeeded.
+    /// Repeats a recorded step. Returns false on failure.
     fn step_in_the_record(&mut self) -> bool {
         self.record.restore_controls(&mut self.simulation);
         let before = Instant::now();
@@ -131,13 +131,13 @@ impl WorldHistory {
         self.step_secs += weight * (secs - self.step_secs);
     }
 
-    /// True if another step brings its time closer to that.
+    /// True if another step brings the world's time closer to `time_secs`.
     pub(super) fn is_before(&self, time_secs: f64) -> bool {
         self.simulation.time_secs() + 0.5 * self.time_step_secs() < time_secs
     }
 
-    /// Steps until the time of the world is the one nearest to `time_secs`, or until the time on the wall is up, once at
-    /// least. Whether all succeeded.
+    /// Takes at least one step until the world's time is nearest to `time_secs` or the wall-clock time is up. Returns
+    /// false if a step failed.
     pub(super) fn catch_up(&mut self, time_secs: f64, until: Instant) -> bool {
         while self.is_before(time_secs) {
             if !self.step() {
@@ -150,7 +150,7 @@ impl WorldHistory {
         true
     }
 
-    /// Starts on the way to a recorded moment.
+    /// Starts a seek to a recorded moment.
     pub(super) fn seek(&mut self, time_secs: f64) {
         if self.failure.is_none() {
             self.record.keep_end(&self.simulation, &self.tally);
@@ -163,19 +163,19 @@ impl WorldHistory {
         self.record.restore_controls(&mut self.simulation);
     }
 
-    /// Takes one step of a seek. Whether it has arrived.
+    /// Takes one step of a seek. Returns true on arrival.
     pub(super) fn advance_seek(&mut self) -> bool {
         let Some(goal) = self.goal_secs else { return true };
         if self.record.has_come_to(&self.simulation, goal) || !self.replay_step() {
             self.goal_secs = None;
-            // The hand that pulled a grain back then is not there when the run goes on from here.
+            // The recorded pull of a grain does not continue from here.
             self.simulation.set_pull(None);
             return true;
         }
         false
     }
 
-    /// Has a hand change the world. What was recorded after this moment is forgotten.
+    /// Changes the world by hand. Later records are removed.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
             return Err(Error::value("state", failure, "one that the run can go on from"));
@@ -187,10 +187,10 @@ impl WorldHistory {
         Ok(())
     }
 
-    /// All that the world has come to, for whoever takes it down.
+    /// The world's history, for handing out.
     pub(super) fn handed_out(&self) -> Self {
         let mut world = Self { stored: StoredMoments::default(), ..self.clone() };
-        // The hand is not there when the run goes on from here.
+        // A pull does not continue from here.
         world.simulation.set_pull(None);
         world
     }

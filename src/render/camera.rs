@@ -1,15 +1,15 @@
-//! From the world to pixels: metres, y up, any distance from the origin.
+//! Conversion from the world (metres, y up, any distance from the origin) to pixels.
 //!
-//! A camera is the point in the middle of the picture and a scale. Positions are taken relative to
-//! that point in f64 and only then become f32 pixels, so that a scene a million diameters away from
-//! the origin draws as sharply as one at the origin.
+//! A camera is the point in the middle of the picture and a scale. Positions are taken relative to that point in f64,
+//! and only then become f32 pixels. So a scene a million diameters from the origin is drawn as sharply as one at the
+//! origin.
 
 use glam::DVec2;
 
 use crate::sim::Snapshot;
 use crate::world::{Boundary, Edge};
 
-/// Which part of the world a picture shows.
+/// The part of the world that a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The point in the middle of the picture, m.
@@ -45,17 +45,17 @@ impl Camera {
     ) -> Self {
         let picture = DVec2::new(f64::from(width), f64::from(height));
         let taken = DVec2::new(margins.left + margins.right, margins.top + margins.bottom);
-        // Margins that leave no room give way: a pixel must show some finite length.
+        // Margins that leave no space are reduced: a pixel must have a finite length.
         let free = (picture - taken).max(DVec2::ONE);
         let extent = max - min;
         let scale = (extent / free).max_element();
-        // A single point has no extent; any scale shows it.
+        // A single point has no extent, so any scale shows it.
         let metres_per_pixel = if scale > 0.0 && scale.is_finite() { scale } else { 1.0 };
         let shift = DVec2::new(margins.right - margins.left, margins.top - margins.bottom) / 2.0;
         Self { centre: (min + max) / 2.0 + shift * metres_per_pixel, metres_per_pixel }
     }
 
-    /// Where a point of the world lies: pixels from the middle of the picture, y up.
+    /// Pixel position of a point of the world, relative to the middle of the picture, y up.
     pub fn project(&self, position: DVec2) -> [f32; 2] {
         self.offset_px(position).as_vec2().into()
     }
@@ -64,7 +64,7 @@ impl Camera {
         (position - self.centre) / self.metres_per_pixel
     }
 
-    /// The point of the world `offset_px` pixels from the middle of the picture, y up.
+    /// The point of the world at `offset_px` pixels from the middle of the picture, y up.
     pub fn unproject(&self, offset_px: DVec2) -> DVec2 {
         self.centre + offset_px * self.metres_per_pixel
     }
@@ -75,13 +75,13 @@ impl Camera {
     }
 }
 
-/// From the middle of a picture of `size` pixels to its corner.
+/// Vector from the middle of a picture of `size` pixels to its corner.
 pub(super) fn half_size(size: [u32; 2]) -> DVec2 {
     DVec2::from(size.map(f64::from)) / 2.0
 }
 
-/// The box around everything of finite size in a snapshot: grains, fixed discs, walls and the
-/// centre of attraction. None if there is nothing.
+/// The box around all finite parts of a snapshot: grains, fixed discs, walls and the centre of attraction. `None` if
+/// there are none.
 pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
     let surroundings = &snapshot.surroundings;
     let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));
@@ -98,7 +98,7 @@ pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
         .reduce(|all, next| [all[0].min(next[0]), all[1].max(next[1])])
 }
 
-/// None of what goes on for ever.
+/// The ends of an edge; none if it is infinite.
 fn ends(edge: Edge) -> impl Iterator<Item = DVec2> {
     let ends = match edge {
         Edge::Endless { .. } => None,
@@ -124,7 +124,7 @@ mod tests {
         let margins = Margins { left: 0.0, right: 0.0, top: 10.0, bottom: 50.0 };
         let camera = Camera::framing_within(DVec2::ZERO, DVec2::new(1.0, 1.0), 100, 160, margins);
         assert_eq!(camera.metres_per_pixel, 0.01);
-        // 50 px stay free below and 10 px above.
+        // 50 px are free below and 10 px above.
         assert_eq!(camera.project(DVec2::ZERO), [-50.0, -30.0]);
         assert_eq!(camera.project(DVec2::ONE), [50.0, 70.0]);
     }

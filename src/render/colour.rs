@@ -1,7 +1,7 @@
 //! Colours in gamma space: the numbers that a PNG file stores, divided by 255.
 //!
-//! All blending happens on these numbers, on every renderer, so that pictures look the same everywhere and a
-//! half-covered edge pixel is the plain mean of its two sides.
+//! Every renderer blends these numbers, so that pictures look the same everywhere and a half-covered edge pixel is
+//! the mean of its two sides.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ impl Colour {
     #[cfg(test)]
     pub(crate) const BLACK: Self = Self::grey(0);
 
-    /// The opaque colour that is written `#rrggbb` on the web.
+    /// The opaque colour `#rrggbb`.
     pub(crate) const fn hex(rrggbb: u32) -> Self {
         Self {
             red: ((rrggbb >> 16) & 0xff) as f32 / 255.0,
@@ -41,7 +41,7 @@ impl Colour {
         Self { alpha, ..self }
     }
 
-    /// This colour at `part` 0, `other` at 1.
+    /// Mixes this colour (`part` 0) with `other` (`part` 1).
     pub(crate) fn mix(self, other: Self, part: f32) -> Self {
         let between = |a: f32, b: f32| a + (b - a) * part;
         Self {
@@ -73,7 +73,7 @@ pub(super) fn blend_pixel(pixel: &mut image::Rgba<u8>, colour: Colour, coverage:
     }
 }
 
-/// Equally spaced along the map.
+/// Colours of the map, equally spaced.
 const VIRIDIS: [Colour; 9] = [
     Colour::hex(0x440154),
     Colour::hex(0x472d7b),
@@ -86,9 +86,9 @@ const VIRIDIS: [Colour; 9] = [
     Colour::hex(0xfde725),
 ];
 
-/// The colour at `part` of the map; what lies outside 0 … 1 takes the colour of the end.
+/// The colour at `part` of the map. Values outside 0 … 1 have the colour of the nearer end.
 pub(crate) fn map_colour(part: f64) -> Colour {
-    // A value that is not a number would index nothing.
+    // NaN has the colour of 0.
     let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
     let place = part * (VIRIDIS.len() - 1) as f64;
     let below = (place as usize).min(VIRIDIS.len() - 2);

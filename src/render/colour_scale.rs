@@ -1,11 +1,11 @@
-//! Colour scales: which quantity of a grain its colour shows, and in which range.
+//! Colour scales: the quantity of a grain that its colour shows, and its range.
 
 use super::colour::{Colour, map_colour};
 use super::numbers::{round_above, si_prefix};
 use super::{ColourBy, Style};
 use crate::sim::{GrainView, Snapshot};
 
-/// Numbers of contacts from here on share one colour.
+/// From this number of contacts on, all grains have the same colour.
 pub(super) const MOST_CONTACTS: u32 = 6;
 
 /// A quantity and the values at the two ends of its colours.
@@ -18,7 +18,7 @@ pub(crate) struct ColourScale {
 }
 
 impl ColourScale {
-    /// The scale that a style asks for: its own range, or one that holds the whole snapshot.
+    /// The scale of a style: its own range, or one that contains the whole snapshot.
     pub(crate) fn new(style: &Style, snapshot: &Snapshot) -> Self {
         let (low, high) = match (style.colour_by, style.range) {
             (ColourBy::Coordination, _) => (0.0, f64::from(MOST_CONTACTS)),
@@ -41,7 +41,7 @@ impl ColourScale {
         }
     }
 
-    /// What the legend calls the quantity, and what its numbers are multiplied by.
+    /// Name of the quantity in the legend, and the factor for its numbers.
     pub(crate) fn label(&self) -> (String, f64) {
         let (prefix, factor) = si_prefix(self.low.abs().max(self.high.abs()));
         match self.colour_by {
@@ -58,8 +58,8 @@ pub(crate) fn contact_colour(contacts: u32) -> Colour {
     map_colour(f64::from(contacts.min(MOST_CONTACTS)) / f64::from(MOST_CONTACTS))
 }
 
-/// A range from zero to a round number that holds every grain of the snapshot. An animation takes
-/// the largest over its frames.
+/// A range from zero to a round number that contains every grain of the snapshot. An animation uses the largest range
+/// of its frames.
 pub(crate) fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64, f64) {
     let mean_diameter = snapshot.surroundings.mean_diameter;
     let largest = snapshot
@@ -68,7 +68,7 @@ pub(crate) fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64,
         .map(|grain| quantity(colour_by, grain, mean_diameter))
         .filter(|value| value.is_finite())
         .fold(0.0, f64::max);
-    // Nothing moves, overlaps or presses: any scale shows it at its lower end.
+    // If nothing moves, overlaps or presses, any scale shows it at its lower end.
     let idle = if colour_by == ColourBy::Overlap { 0.01 } else { 1.0 };
     (0.0, if largest > 0.0 { round_above(largest) } else { idle })
 }

@@ -1,8 +1,7 @@
-//! Several pictures as one figure, arranged as a journal does: a grid of panels with labels.
+//! A figure of several pictures, arranged as in a journal: a grid of panels with labels.
 //!
-//! Every label is laid out before anything is placed, and the grid takes the room that the labels need. So nothing is
-//! cut and nothing overlaps, whatever the words are: long ones break at spaces, and a word too long for its place
-//! becomes smaller.
+//! All labels are laid out before anything is placed, and the grid reserves the space that they need. So no label is
+//! cut or overlaps another: long ones break at spaces, and a word too long for its place becomes smaller.
 
 use image::{RgbaImage, imageops};
 
@@ -20,11 +19,11 @@ pub struct PanelGrid {
     pub columns: usize,
     /// Pictures of one size, at most `rows` × `columns`.
     pub panels: Vec<RgbaImage>,
-    /// Title of each panel; none where the list ends early or the title is empty.
+    /// Title of each panel. A title is left out if it is empty or the list is shorter.
     pub panel_titles: Vec<String>,
-    /// True if panel titles lie in the panels' upper left corners instead of above them.
+    /// True if panel titles are in the panels' upper left corners instead of above them.
     pub titles_inside: bool,
-    /// Labels at the left of the rows, reading upwards.
+    /// Labels on the left of the rows, reading upwards.
     pub row_labels: Vec<String>,
     /// Labels above the columns.
     pub column_labels: Vec<String>,
@@ -50,7 +49,7 @@ impl PanelGrid {
         }
     }
 
-    /// Draws the figure. Its size follows from the panels and the labels.
+    /// Draws the figure. Its size depends on the panels and the labels.
     ///
     /// # Errors
     /// Names the list that does not fit the grid, or the panel of another size.
@@ -64,7 +63,7 @@ impl PanelGrid {
         Ok(image)
     }
 
-    /// Checks the lists against the grid; gives the size of a panel.
+    /// Checks the lists against the grid. Returns the size of a panel.
     fn validate(&self) -> Result<[u32; 2]> {
         let places = self.rows * self.columns;
         let Some(first) = self.panels.first() else {
@@ -91,7 +90,7 @@ impl PanelGrid {
     }
 }
 
-/// The blocks of a figure, laid out, and the room they take. Lengths in pixels.
+/// The laid-out text blocks of a figure, and the space that they take. Lengths in pixels.
 struct GridLayout {
     gap: u32,
     panel: [u32; 2],
@@ -110,7 +109,7 @@ struct GridLayout {
 impl GridLayout {
     fn new(figure: &PanelGrid, panel: [u32; 2], palette: &Palette) -> Self {
         let columns = figure.columns as u32;
-        // 18 px at 1600 px width, but readable on small grids too.
+        // 18 px at a width of 1600 px, but readable on small grids too.
         let text_px = ((panel[0] * columns) as f32 / 88.0).clamp(14.0, 48.0).round();
         let gap = (0.6 * text_px).round() as u32;
         let text = TextStyle::new(text_px, palette.ink);
@@ -276,7 +275,7 @@ mod tests {
         let teal = Colour::hex(0x2c728e).to_rgba8();
         let covered = image.pixels().filter(|pixel| **pixel == teal).count();
         assert_eq!(covered, 4 * 118 * 78, "no label may cover a panel within its frame");
-        // The outermost pixels stay free, so no label is cut.
+        // The outermost pixels are free, so no label is cut.
         let (width, height) = image.dimensions();
         let white = Colour::WHITE.to_rgba8();
         assert!((0..width).all(|x| *image.get_pixel(x, 0) == white));

@@ -1,6 +1,6 @@
-//! A GPU, on Vulkan or OpenGL, and pictures that it draws into memory.
+//! A GPU, on Vulkan or OpenGL, which draws pictures into memory.
 //!
-//! Each kind is asked for by itself, so that a missing driver can be named. Software drivers (Mesa's llvmpipe) count
+//! Each kind is requested separately, so that a missing driver can be named. Software drivers (Mesa's llvmpipe) count
 //! as GPUs: they draw the same pictures.
 
 use std::sync::{Arc, Mutex};
@@ -36,7 +36,7 @@ impl Gpu {
         };
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
-            // Debug builds would otherwise load validation layers and let them write to stderr.
+            // Without this, debug builds would load validation layers, which write to stderr.
             flags: wgpu::InstanceFlags::empty(),
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
@@ -70,18 +70,18 @@ impl Gpu {
         Ok(Self { device, queue, name, failure })
     }
 
-    /// Fails if anything went wrong on the device since the last call.
+    /// Returns an error if anything failed on the device since the last call.
     pub(crate) fn check(&self) -> Result<()> {
         let Some(message) = self.failure.lock().ok().and_then(|mut first| first.take()) else {
             return Ok(());
         };
-        // Messages of wgpu run over several lines; an error is one sentence.
+        // Messages of wgpu have several lines; an error is one sentence.
         let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
         Err(Error::Renderer(format!("{} failed: {message}", self.name)))
     }
 }
 
-/// What is missing and what brings it, as one sentence.
+/// One sentence that names the missing driver and the package that contains it.
 fn missing(kind: GpuKind) -> Error {
     let (driver, packages) = match kind {
         GpuKind::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
@@ -93,18 +93,18 @@ fn missing(kind: GpuKind) -> Error {
     ))
 }
 
-/// Stores the numbers that are blended; an sRGB format would convert them.
+/// A format that stores the blended numbers; an sRGB format would convert them.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// A GPU that draws pictures into memory. Rows of the readback buffer are padded to the 256 bytes that texture copies
-/// ask for. Texture and buffer live on while the size stays the same, as it does in a sequence of pictures.
+/// A GPU that draws pictures into memory. Rows of the readback buffer are padded to 256 bytes, as texture copies
+/// require. Texture and buffer are kept while the size is unchanged, as in a sequence of pictures.
 pub(super) struct Offscreen {
     gpu: Gpu,
     painter: Painter,
     target: Option<OffscreenTarget>,
 }
 
-/// What depends on the size of the picture.
+/// The resources that depend on the size of the picture.
 pub(crate) struct OffscreenTarget {
     pub width: u32,
     pub height: u32,
@@ -164,12 +164,12 @@ impl Offscreen {
         target.record_copy(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let image = target.read(gpu);
-        // A failure on the device explains more than the readback that it spoiled.
+        // A failure on the device explains more than the failed readback.
         gpu.check().and(image)
     }
 }
 
-/// The ground as a clear colour, at the exact value of its byte so that no driver rounds it apart.
+/// The ground as a clear colour, at the exact value of its byte, so that all drivers round it in the same way.
 fn clear_colour(colour: Colour) -> wgpu::Color {
     let [r, g, b, _] = colour.to_rgba8().0.map(|byte| f64::from(byte) / 255.0);
     wgpu::Color { r, g, b, a: 1.0 }
@@ -230,7 +230,7 @@ impl OffscreenTarget {
         };
         let (sender, receiver) = std::sync::mpsc::channel();
         self.readback.map_async(wgpu::MapMode::Read, .., move |outcome| {
-            // The receiver outlives the poll below, so only a lost device can leave none.
+            // The receiver lives longer than the poll below, so only a lost device can prevent the message.
             let _ = sender.send(outcome);
         });
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(&error))?;

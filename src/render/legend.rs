@@ -1,6 +1,6 @@
-//! What a picture says of itself: the scale bar, and the strip at the right that tells what colours and links mean.
+//! Scale bar, and the strip on the right that explains colours and links.
 //!
-//! The strip is drawn on the processor whatever draws the scene, so that it is the same on every renderer.
+//! The strip is always drawn on the processor, so that it is the same with every renderer.
 
 use image::{RgbaImage, imageops};
 
@@ -12,10 +12,10 @@ use super::text::{Align, TextBlock, TextStyle};
 use super::{Camera, Colour, ColourBy, LinkInstance, Palette, Picture, Style, primitives};
 use crate::sim::Snapshot;
 
-/// Longest bar, as a part of the picture's width.
+/// Longest scale bar, as a fraction of the picture's width.
 const LONGEST: f64 = 0.2;
 
-/// Where the scale bar of a picture lies, and what it says.
+/// Place and label of a picture's scale bar.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ScaleBar {
     pub length: f64,
@@ -44,7 +44,7 @@ impl ScaleBar {
         }
     }
 
-    /// Bar and end marks, on a plate of the ground's colour that `label_width` pixels of text fit on.
+    /// Bar and end marks, on a plate of the ground's colour with space for `label_width` pixels of text.
     pub(super) fn links(&self, palette: &Palette, label_width: f32) -> Vec<LinkInstance> {
         let ([left, y], [right, _]) = (self.start, self.end);
         let half_width = (self.text_px / 16.0).max(0.75);
@@ -69,19 +69,18 @@ impl ScaleBar {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Legend {
     pub scale: ColourScale,
-    /// How far the grains have faded towards the ground, 0 … 1.
+    /// How much the grains have faded towards the ground, 0 … 1.
     pub fading: f32,
-    /// The |N| (N) at full width and half that width (px), where forces are drawn.
+    /// The |N| (N) at full width, and half that width (px), if forces are drawn.
     pub forces: Option<(f64, f32)>,
-    /// The speed (m/s) of an arrow, and its length (px), where velocities are drawn.
+    /// The speed (m/s) and length (px) of an arrow, if velocities are drawn.
     pub velocities: Option<(f64, f32)>,
     pub palette: Palette,
     pub text_px: f32,
 }
 
 impl Legend {
-    /// What a snapshot drawn in a style needs to be told. `text_px` is the font size of the whole
-    /// picture.
+    /// The legend of a snapshot in a style. `text_px` is the font size of the whole picture.
     pub(crate) fn of(snapshot: &Snapshot, style: &Style, camera: &Camera, text_px: f32) -> Self {
         let mean_diameter = snapshot.surroundings.mean_diameter;
         let forces =
@@ -119,7 +118,7 @@ impl Legend {
         (sizes * self.text_px).round() as i64
     }
 
-    /// A colour as grains show it.
+    /// A colour as it appears on grains.
     fn faded(&self, colour: Colour) -> Colour {
         colour.mix(self.palette.ground, self.fading)
     }
@@ -128,7 +127,7 @@ impl Legend {
         TextStyle::new(self.text_px, self.palette.ink)
     }
 
-    /// A continuous bar with ticks at its right and its title, turned, beyond them.
+    /// Draws a continuous bar with ticks on its right and the turned title beyond them.
     fn draw_bar(&self, strip: &mut RgbaImage, top: i64, bottom: i64) {
         let (left, right) = (self.em(0.4), self.em(1.5));
         let rows = bottom - top;
@@ -147,7 +146,7 @@ impl Legend {
         let mut widest = 0;
         for value in values {
             let part = if span > 0.0 { (value - low) / span } else { 0.0 };
-            // The middle of the end ticks stays on the bar.
+            // The middle of the end ticks is on the bar.
             let y = bottom - 1 - (part * (rows - 1) as f64).round() as i64;
             fill(strip, right, right + self.em(0.3), y, y + 1, self.palette.ink);
             let label = TextBlock::new(&decimal(value, step), &self.text());
@@ -157,7 +156,7 @@ impl Legend {
         self.draw_title(strip, &title, rows, right + self.em(0.5) + widest, (top + bottom) / 2);
     }
 
-    /// One square for each number of contacts, the largest on top.
+    /// Draws one square for each number of contacts, the largest on top.
     fn draw_swatches(&self, strip: &mut RgbaImage, top: i64, bottom: i64) {
         let count = i64::from(MOST_CONTACTS) + 1;
         let pitch = self.em(1.8).min((bottom - top) / count);
@@ -179,7 +178,7 @@ impl Legend {
         self.draw_title(strip, &title, count * pitch, x, start + count * pitch / 2);
     }
 
-    /// The two colours of forces and the force at full width. Returns where it begins.
+    /// Draws the two colours of forces and the force at full width. Returns the upper end of the key.
     fn draw_force_key(
         &self,
         strip: &mut RgbaImage,
@@ -205,10 +204,10 @@ impl Legend {
         y - self.em(1.2)
     }
 
-    /// An arrow and the speed it stands for. Returns where it begins.
+    /// Draws an arrow with its speed. Returns the upper end of the key.
     fn draw_arrow_key(&self, strip: &mut RgbaImage, bottom: i64, speed: f64, length: f32) -> i64 {
         let largest = (strip.width() as f32 - 2.0 * self.text_px).max(1.0);
-        // Half as long an arrow stands for half the speed, until it fits.
+        // An arrow that is too long is halved, with its speed, until it fits.
         let halvings = (length / largest).log2().ceil().max(0.0);
         let (speed, length) = (speed / f64::from(halvings.exp2()), length / halvings.exp2());
         let (prefix, factor) = si_prefix(speed);
@@ -256,7 +255,8 @@ impl Legend {
         imageops::replace(strip, &sample, self.em(0.2), y - i64::from(height / 2));
     }
 
-    /// Draws the title on one line that reads upwards from the point, smaller if it would be longer than the bar.
+    /// Draws the title on one line that reads upwards from the point. It is smaller if it would be longer than the
+    /// bar.
     fn draw_title(&self, strip: &mut RgbaImage, title: &str, length: i64, x: i64, y: i64) {
         let style = self.text();
         let shrink = (length as f32 / style.width(title).max(1.0)).min(1.0);
@@ -265,7 +265,7 @@ impl Legend {
     }
 }
 
-/// Fills a rectangle, as far as it lies in the image.
+/// Fills the part of a rectangle that is in the image.
 pub(super) fn fill(
     image: &mut RgbaImage,
     left: i64,

@@ -1,9 +1,9 @@
-//! Round numbers, and numbers as people write them.
+//! Round numbers, and numbers in readable form.
 
-/// The longest of 1, 2 and 5 times a power of ten that is at most `limit`, which must be positive.
+/// The largest of 1, 2 and 5 times a power of ten that is at most `limit`, which must be positive.
 pub(crate) fn round_below(limit: f64) -> f64 {
     let power = 10f64.powi(limit.log10().floor() as i32);
-    // The tolerance keeps 0.2 from losing to its own logarithm's rounding.
+    // The tolerance prevents 0.2 from being lost to the rounding of its own logarithm.
     [10.0, 5.0, 2.0, 1.0]
         .into_iter()
         .map(|factor| factor * power)
@@ -11,7 +11,7 @@ pub(crate) fn round_below(limit: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// A number a little above `value`, which must be positive, at which a scale can end.
+/// A number slightly above `value`, which must be positive, at which a scale can end.
 pub(crate) fn round_above(value: f64) -> f64 {
     let power = 10f64.powi(value.log10().floor() as i32);
     [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
@@ -36,25 +36,25 @@ pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
         let (first, last) = (low / step - 1e-9, high / step + 1e-9);
         (first.ceil() as i64, last.floor() as i64)
     };
-    // One number alone says nothing of an axis.
+    // A single number does not show the scale of an axis.
     let has_two = |step: &f64| ends(*step).0 < ends(*step).1;
     let step = steps[widest..].iter().copied().find(has_two).unwrap_or(steps[widest]);
     let (first, last) = ends(step);
     ((first..=last).map(|index| index as f64 * step).collect(), step)
 }
 
-/// Decimals, and zeros before the point, of numbers that are not written as powers of ten.
+/// Largest number of decimals, and of zeros before the point, of numbers that are not written as powers of ten.
 const MOST_DECIMALS: f64 = 6.0;
 
-/// A number with as many decimals as tell multiples of `step` apart, as a power of ten where those are many, and
-/// a true minus sign.
+/// A number with enough decimals to distinguish multiples of `step`, or as a power of ten if these are many, with a
+/// true minus sign.
 pub(crate) fn decimal(value: f64, step: f64) -> String {
     let places = -(step.abs().log10() + 1e-9).floor();
     let is_far = places.abs() > MOST_DECIMALS;
     let text = if is_far && value == 0.0 {
         "0".to_owned()
     } else if is_far {
-        // As many digits as lie between the number and the step.
+        // As many digits as there are between the number and the step.
         let digits = (value.abs().log10().floor() + places).clamp(0.0, 15.0) as usize;
         format!("{value:.digits$e}").replace("e-", "e−")
     } else {
@@ -69,9 +69,8 @@ pub(crate) fn decimal(value: f64, step: f64) -> String {
     }
 }
 
-/// The prefix with which numbers up to `largest` of a unit are written, and the factor it stands
-/// for. No prefix between 0.1 and 10 000, nor below 0.001 of the smallest: such numbers are written as powers of
-/// ten.
+/// The prefix with which numbers up to `largest` of a unit are written, and its factor. There is no prefix between
+/// 0.1 and 10 000, nor below 0.001 of the smallest prefix: such numbers are written as powers of ten.
 pub(crate) fn si_prefix(largest: f64) -> (&'static str, f64) {
     let largest = largest.abs();
     if largest < 1e-15 || !largest.is_finite() || (0.1..1e4).contains(&largest) {
@@ -83,7 +82,7 @@ pub(crate) fn si_prefix(largest: f64) -> (&'static str, f64) {
         .unwrap_or(("p", 1e-12))
 }
 
-/// A round length, m, as people write it: "5 mm", "20 cm", "1 km".
+/// A round length, m, in readable form: "5 mm", "20 cm", "1 km".
 pub(crate) fn length(metres: f64) -> String {
     let (unit, factor) =
         [("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)]
@@ -149,7 +148,7 @@ mod tests {
         assert_eq!(decimal(-1e-18, 0.1), "0.0");
         assert_eq!(decimal(1500.0, 500.0), "1500");
         assert_eq!(decimal(0.025, 0.005), "0.025");
-        // What has as many zeros as digits fit is written as a power of ten.
+        // Numbers with as many zeros as fit digits are written as powers of ten.
         assert_eq!(decimal(2e-10, 1e-10), "2e−10");
         assert_eq!(decimal(-2.5e-8, 5e-9), "−2.5e−8");
         assert_eq!(decimal(0.0, 1e-10), "0");

@@ -1,4 +1,4 @@
-//! What is laid over the grains: contact forces, velocities, and how walls and fixed discs move.
+//! Overlays on the grains: contact forces, velocities, and motions of walls and fixed discs.
 
 use std::f64::consts::TAU;
 
@@ -13,13 +13,13 @@ use crate::world::Edge;
 
 /// Width of the widest link, in units of d.
 const FORCE_WIDTH: f64 = 0.4;
-/// Forces below this part of the reference are left out: their links would be invisible.
+/// Smallest force drawn, as a fraction of the reference. Thinner links would be invisible.
 const LEAST_FORCE: f64 = 0.004;
-/// The share of contacts whose links are narrower than the full width, where no reference is given.
+/// Fraction of contacts whose links are narrower than the full width, if no reference is given.
 const REFERENCE_QUANTILE: f64 = 0.95;
 
-/// The |N| (N) that is drawn at full width: the style's own, or the 95th percentile of the
-/// snapshot, so that a single huge force does not make all others vanish. 0 without any force.
+/// The |N| (N) at full width: the style's own, or the 95th percentile of the snapshot, so that a single huge force
+/// does not make all others invisible. 0 without any force.
 pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     style.force_reference.unwrap_or_else(|| {
         let mut forces: Vec<f64> = snapshot
@@ -39,7 +39,7 @@ pub(super) fn full_half_width_px(mean_diameter: f64, camera: &Camera) -> f32 {
     camera.pixels(0.5 * FORCE_WIDTH * mean_diameter)
 }
 
-/// The links of all contacts that show, the strongest on top.
+/// The links of all visible contacts, the strongest on top.
 pub(super) fn force_links(
     snapshot: &Snapshot,
     style: &Style,
@@ -64,7 +64,7 @@ pub(super) fn force_links(
     shown
         .into_iter()
         .flat_map(|(contact, part)| {
-            // One that reaches over a periodic border shows on both sides.
+            // A contact across a periodic border is drawn on both sides.
             let reach = [contact.from.min(contact.to), contact.from.max(contact.to)];
             let images = periodic.into_iter().flat_map(move |periodic| periodic.images(reach));
             std::iter::once(DVec2::ZERO).chain(images).map(move |by| (contact, part, by))
@@ -80,21 +80,20 @@ pub(super) fn force_links(
 
 /// Length of the velocity arrow at the reference speed, in units of d.
 const VELOCITY_LENGTH: f64 = 2.5;
-/// Arrows below this part of the reference are left out: they would be dots.
+/// Smallest velocity drawn, as a fraction of the reference. Shorter arrows would be dots.
 const LEAST_VELOCITY: f64 = 0.03;
 /// Half the width of the shaft, and the length of the two barbs, in units of d.
 const VELOCITY_HALF_WIDTH: f64 = 0.05;
 const VELOCITY_BARB: f64 = 0.35;
 
-/// The speed that is drawn at full length, m/s: the style's own, or a round number above the fastest
-/// grain's; 0 where nothing moves.
+/// The speed at full length, m/s: the style's own, or a round number above the fastest grain's; 0 if nothing moves.
 pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     if let Some(reference) = style.speed_reference {
         return reference;
     }
     let speeds = snapshot.grains.iter().map(|grain| grain.velocity.length());
     let fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    // Below this a pile is at rest; arrows would show rounding.
+    // Below this a pile is at rest, and arrows would show rounding errors.
     let least = 1e-9 * snapshot.surroundings.gravity_magnitude.max(1.0);
     if fastest > least { round_above(fastest) } else { 0.0 }
 }
@@ -104,7 +103,7 @@ pub(super) fn full_length(snapshot: &Snapshot) -> f64 {
     VELOCITY_LENGTH * snapshot.surroundings.mean_diameter
 }
 
-/// The arrows of all grains that show.
+/// The arrows of all visible grains.
 pub(super) fn velocity_links(
     snapshot: &Snapshot,
     style: &Style,
@@ -122,7 +121,7 @@ pub(super) fn velocity_links(
     let mut links = Vec::new();
     for grain in &snapshot.grains {
         let part = grain.velocity / reference;
-        // A velocity that is not a number is no arrow.
+        // A NaN velocity has no arrow.
         if part.length().is_nan() || part.length() < LEAST_VELOCITY {
             continue;
         }
@@ -145,24 +144,24 @@ pub(super) fn velocity_links(
 /// Length of an arrow, and of the two barbs of its head.
 const LENGTH_EM: f64 = 1.7;
 const BARB_EM: f64 = 0.5;
-/// From one of two heads to the other.
+/// Distance between the two heads of an arrow.
 const SECOND_HEAD_EM: f64 = 0.42;
-/// Half the width of its lines, and what the ground shows around them.
+/// Half the width of an arrow's lines, and the width of the ground's colour around them.
 const HALF_WIDTH_EM: f64 = 0.075;
 const HALO_EM: f64 = 0.07;
-/// Least distance between two arrows of one motion.
+/// Smallest distance between two arrows of one motion.
 const SPACING_EM: f64 = 4.0;
-/// How far beside a wall an arrow lies that goes along it.
+/// Distance from a wall to an arrow along it.
 const BESIDE_EM: f64 = 0.75;
-/// How far before what it drives the middle of a force's arrow lies.
+/// Distance from a driven body to the middle of its force's arrow.
 const LOAD_EM: f64 = 1.75;
-/// Radius of the arc at a pivot, how far it goes round, and its pieces.
+/// Radius of the arc around a pivot, its angle, and its number of pieces.
 const ARC_EM: f64 = 0.9;
 const ARC_TURN: f64 = 0.75 * TAU;
 const ARC_PIECES: usize = 18;
-/// What is slower than this many mean diameters a second stands still.
+/// Bodies slower than this many mean diameters per second count as at rest.
 const LEAST_DIAMETERS_PER_SEC: f64 = 1e-9;
-/// Cosine above which a way is one along a wall.
+/// Cosine above which a direction counts as along a wall.
 const ALONG: f64 = 0.9;
 
 struct MotionArrows<'a> {
@@ -174,16 +173,16 @@ struct MotionArrows<'a> {
 }
 
 struct Spot {
-    /// Its place, and in pixels from the middle of the picture.
+    /// Its place in the world, and in pixels from the middle of the picture.
     place: DVec2,
     at: DVec2,
-    /// Unit vector out of the body, where it is a wall; and whether the other side is open as well.
+    /// For a wall: unit vector out of the body, and true if the other side is open as well.
     normal: Option<(DVec2, bool)>,
 }
 
-/// The links of all motions that show in a picture of `size` pixels: arrows that lie on what moves and go with it; arrows
-/// with two heads where a force drives it; and an arc with a head at what it turns round. An arrow says which way, not
-/// how fast: its length is that of words, so that a slow wall has one, too.
+/// The links of all visible motions in a picture of `size` pixels: arrows on moving bodies, arrows with two heads on
+/// bodies that a force drives, and an arc with a head around a pivot. An arrow shows the direction, not the speed:
+/// its length depends on the font size, so that a slow wall has one, too.
 pub(super) fn motion_links(
     surroundings: &Surroundings,
     palette: &Palette,
@@ -221,7 +220,7 @@ impl MotionArrows<'_> {
             if motion.surface_speed != 0.0 {
                 self.belt(spot, motion.surface_speed);
             }
-            // One force drives all of them.
+            // One force drives all bodies of a motion.
             if motion.force != DVec2::ZERO && index == spots.len() / 2 {
                 let before = -LOAD_EM * self.em * motion.force.normalize_or_zero();
                 self.arrow(spot.at + before, motion.force, 2);
@@ -232,7 +231,7 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Where its arrows lie: on all bodies, but not closer to each other than can be told apart.
+    /// Places of a motion's arrows: on all its bodies, but not too close to each other.
     fn spots(&self, motion: &MotionView, surroundings: &Surroundings) -> Vec<Spot> {
         let boundaries =
             motion.boundaries.iter().filter_map(|&index| surroundings.boundaries.get(index));
@@ -254,7 +253,7 @@ impl MotionArrows<'_> {
         spots
     }
 
-    /// The middle of an edge; of an endless one the place that is nearest to the middle of the picture.
+    /// The middle of an edge; on an infinite edge the place nearest to the middle of the picture.
     fn spot_on(&self, edge: Edge) -> Spot {
         match edge {
             Edge::Endless { point, normal } => {
@@ -271,14 +270,14 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// How far from its spot an arrow lies: beside a wall that it goes along, inside of a solid.
+    /// Offset of an arrow from its spot: beside a wall that moves along itself, inside a solid.
     fn beside(&self, spot: &Spot, velocity: DVec2) -> DVec2 {
         let Some((normal, _)) = spot.normal else { return DVec2::ZERO };
         let along = velocity.normalize_or_zero().dot(normal.perp()).abs() > ALONG;
         if along { -BESIDE_EM * self.em * normal } else { DVec2::ZERO }
     }
 
-    /// A surface that goes round its body.
+    /// Draws the motion of a surface around its body.
     fn belt(&mut self, spot: &Spot, speed: f64) {
         let Some((normal, is_open)) = spot.normal else {
             return self.arc(spot.at, ARC_EM, speed);
@@ -286,13 +285,13 @@ impl MotionArrows<'_> {
         let sides: &[f64] = if is_open { &[1.0, -1.0] } else { &[1.0] };
         for side in sides {
             let outward = *side * normal;
-            // Outside of an open wall on either side; inside of a solid.
+            // Outside an open wall on both sides; inside a solid.
             let place = if is_open { outward } else { -outward };
             self.arrow(spot.at + BESIDE_EM * self.em * place, speed * outward.perp(), 1);
         }
     }
 
-    /// An arrow with its middle at a place, pixels.
+    /// Draws an arrow with its middle at a place, pixels.
     fn arrow(&mut self, middle: DVec2, along: DVec2, heads: u32) {
         let along = along.normalize_or_zero();
         let half = 0.5 * LENGTH_EM * self.em * along;
@@ -309,7 +308,7 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// An arc round a place, pixels, that goes anticlockwise where the rate is above 0.
+    /// Draws an arc around a place, pixels, anticlockwise for a positive rate.
     fn arc(&mut self, centre: DVec2, radius_em: f64, rate: f64) {
         if !centre.abs().cmple(self.reach).all() {
             return;
@@ -351,7 +350,7 @@ mod tests {
         };
         let palette = Theme::Light.palette();
         let links = motion_links(&surroundings, &palette, &CAMERA, [800, 600], 16.0);
-        // The second half lies on the first, which is its halo.
+        // The second half is drawn on the first, which is its halo.
         links[links.len() / 2..].to_vec()
     }
 
@@ -367,7 +366,7 @@ mod tests {
         assert_eq!(drawn.len(), 3, "a shaft and two barbs");
         assert_eq!(drawn[0].start[0], 0.0);
         assert!(drawn[0].start[1] > 0.0 && drawn[0].end[1] < 0.0);
-        // Two heads where a force drives it, beside the first.
+        // A second head beside the first shows a driving force.
         let force = MotionView { force: DVec2::Y, ..motion.clone() };
         assert_eq!(lines(wall(), Vec::new(), force).len(), 3 + 5);
         let still = MotionView { velocity: DVec2::ZERO, ..motion };
@@ -409,7 +408,7 @@ mod tests {
         let floor = vec![Boundary::HalfSpace { point: DVec2::new(3.0, 0.0), normal: DVec2::Y }];
         let belt = MotionView { boundaries: vec![0], surface_speed: 0.5, ..MotionView::default() };
         let drawn = lines(floor, Vec::new(), belt);
-        // To the left on a floor, below its surface.
+        // Leftwards on a floor, below its surface.
         assert!(drawn[0].end[0] < drawn[0].start[0] && drawn[0].start[1] < 0.0);
     }
 }

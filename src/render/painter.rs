@@ -1,15 +1,15 @@
-//! Pictures on a GPU: one pipeline and one instance buffer a primitive, and the order of batches.
+//! Pictures on a GPU: one pipeline and one instance buffer per primitive, and the order of batches.
 //!
-//! A window calls [`Painter::prepare`] before its pass and [`Painter::draw`] inside it; the offscreen target does the
-//! same. Neither knows where it draws: the target need only have the format that the painter was made for. The four
-//! corners of an instance's quad come from the vertex index alone; instances travel as a vertex buffer, because
-//! OpenGL ES 3.0 has no storage buffers in vertex shaders.
+//! A window calls [`Painter::prepare`] before its pass and [`Painter::draw`] inside it; so does the offscreen target.
+//! Neither depends on the target, which only needs the format for which the painter was made. The vertex index gives
+//! the four corners of an instance's quad. Instances are in a vertex buffer, because OpenGL ES 3.0 has no storage
+//! buffers in vertex shaders.
 
 use std::ops::Range;
 
 use super::{Batch, DiscInstance, LinkInstance, Picture};
 
-/// Where in the render target the picture lies, as all shaders read it: pixels, y down.
+/// Place of the picture in the render target, as all shaders read it: pixels, y down.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct PictureArea {
@@ -18,8 +18,7 @@ pub(crate) struct PictureArea {
 }
 
 impl PictureArea {
-    /// A picture whose upper left corner lies at (`left`, `top`). The pass's viewport must be the
-    /// same rectangle.
+    /// A picture with its upper left corner at (`left`, `top`). The pass's viewport must be the same rectangle.
     pub(crate) fn new(left: f32, top: f32, width: f32, height: f32) -> Self {
         let half_size = [width / 2.0, height / 2.0];
         Self { centre: [left + half_size[0], top + half_size[1]], half_size }
@@ -32,9 +31,9 @@ pub(crate) struct Painter {
     /// The [`PictureArea`], which all shaders read.
     area: wgpu::Buffer,
     area_group: wgpu::BindGroup,
-    /// Of discs and of links.
+    /// Pipelines of discs and of links.
     primitives: [PrimitivePipeline; 2],
-    /// For each batch its primitive, and its bytes in that one's instance buffer.
+    /// For each batch its primitive, and its bytes in the instance buffer.
     order: Vec<(usize, Range<u64>)>,
 }
 
@@ -48,8 +47,8 @@ struct PrimitivePipeline {
 }
 
 impl Painter {
-    /// A painter for targets of this format. The format must not be an sRGB one: colours are written, and blended, as
-    /// the file stores them.
+    /// A painter for targets of this format, which must not be an sRGB format: colours are blended and written as a
+    /// file stores them.
     pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let area = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("picture area"),
@@ -129,7 +128,7 @@ impl Painter {
         }
     }
 
-    /// Records the drawing of the prepared picture. The ground is the pass's own clear colour.
+    /// Records the drawing of the prepared picture. The ground is the clear colour of the pass.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         for (primitive, bytes) in self.order.iter().filter(|(_, bytes)| !bytes.is_empty()) {
             let PrimitivePipeline { stride, pipeline, instances, .. } =

@@ -1,9 +1,9 @@
-//! What a renderer draws: discs and straight strokes in pixels, in drawing order, on an opaque ground.
+//! Input of a renderer: discs and straight strokes in pixels, in drawing order, on an opaque ground.
 //!
-//! World positions become pixels in [`super::Camera::project`], in f64 and relative to the middle of the picture, so
-//! that f32 suffices here however far from the origin the scene lies. `shaders/disc.wgsl` and `shaders/link.wgsl` draw
-//! the primitives on a GPU, and [`draw`] evaluates the same distance fields on the processor. It rounds to 8 bits
-//! after every instance as a render target does, which keeps it within 3/255 of every GPU in every channel.
+//! [`super::Camera::project`] converts world positions to pixels in f64, relative to the middle of the picture, so
+//! f32 is sufficient here at any distance from the origin. `shaders/disc.wgsl` and `shaders/link.wgsl` draw the
+//! primitives on a GPU, and [`draw`] evaluates the same distance fields on the processor. It rounds to 8 bits after
+//! every instance, like a render target, and so stays within 3/255 of every GPU in every channel.
 
 use glam::{DVec2, Vec2};
 use image::RgbaImage;
@@ -17,7 +17,7 @@ pub(crate) enum Batch {
     Links(Vec<LinkInstance>),
 }
 
-/// All that a renderer needs. Later batches cover earlier ones.
+/// Everything that a renderer needs. Later batches cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Picture {
     /// Colour of the ground; its opacity is ignored.
@@ -30,14 +30,14 @@ impl Picture {
         Self { background: background.with_alpha(1.0), batches: Vec::new() }
     }
 
-    /// Lays discs on top; an empty list leaves no batch.
+    /// Adds discs on top. An empty list adds no batch.
     pub(crate) fn push_discs(&mut self, discs: Vec<DiscInstance>) {
         if !discs.is_empty() {
             self.batches.push(Batch::Discs(discs));
         }
     }
 
-    /// Lays links on top; an empty list leaves no batch.
+    /// Adds links on top. An empty list adds no batch.
     pub(crate) fn push_links(&mut self, links: Vec<LinkInstance>) {
         if !links.is_empty() {
             self.batches.push(Batch::Links(links));
@@ -45,7 +45,7 @@ impl Picture {
     }
 }
 
-/// A disc thinner than a pixel is drawn one pixel wide and fainter instead.
+/// Smallest drawn radius. A thinner disc is drawn one pixel wide and fainter.
 const LEAST_RADIUS_PX: f32 = 0.5;
 
 /// One disc. Lengths in pixels; positions relative to the middle of the picture, y up.
@@ -56,7 +56,7 @@ pub(crate) struct DiscInstance {
     pub centre: [f32; 2],
     /// Radius, outline included.
     pub radius: f32,
-    /// Width of the outline, which lies inside the radius; 0 for none.
+    /// Width of the outline, which is inside the radius; 0 for none.
     pub outline_width: f32,
     /// Half the width of the mark from the centre to the outline; 0 for none.
     pub mark_half_width: f32,
@@ -113,7 +113,7 @@ impl Shade for DiscInstance {
     }
 }
 
-/// A link thinner than a pixel is drawn one pixel wide and fainter instead.
+/// Smallest drawn half width. A thinner link is drawn one pixel wide and fainter.
 const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 
 /// One link. Lengths in pixels; positions relative to the middle of the picture, y up.
@@ -158,13 +158,13 @@ impl Shade for LinkInstance {
 
 /// A primitive as a distance field in the plane of the picture, pixels, y up.
 trait Shade {
-    /// Corners of a box outside which the primitive has no effect on pixel middles.
+    /// Corners of a box outside which the primitive does not affect the middle of any pixel.
     fn bounds(&self) -> [Vec2; 2];
-    /// Premultiplied colour, times the covered part, of the pixel with this middle.
+    /// Premultiplied colour of the pixel with this middle, times its covered fraction.
     fn shade(&self, point: Vec2) -> [f32; 4];
 }
 
-/// Covered part of a pixel whose middle is `distance` px outside an edge.
+/// Covered fraction of a pixel whose middle is `distance` px outside an edge.
 fn coverage(distance: f32) -> f32 {
     (0.5 - distance).clamp(0.0, 1.0)
 }
@@ -190,7 +190,7 @@ pub(super) fn draw(picture: &Picture, width: u32, height: u32) -> RgbaImage {
     image
 }
 
-/// Lays the shaded colour over the pixels of the bounding box.
+/// Blends the shaded colour over the pixels of the bounding box.
 fn draw_one(image: &mut RgbaImage, primitive: &impl Shade) {
     let (width, height) = image.dimensions();
     let middle = Vec2::new(width as f32, height as f32) / 2.0;

@@ -1,4 +1,4 @@
-//! One way to draw a picture, whatever draws it: Vulkan, OpenGL or the processor.
+//! The renderer: draws a picture by Vulkan, OpenGL or the processor.
 
 use image::RgbaImage;
 
@@ -8,23 +8,23 @@ use super::renderer_choice::{GpuKind, RendererChoice};
 use super::{Picture, primitives};
 use crate::error::{Error, Result};
 
-/// Keeps a layer of Mesa's Vulkan from writing to stderr where there is no desktop: it asks for a
+/// Prevents a layer of Mesa's Vulkan from writing to stderr on systems without a desktop: the layer asks for a
 /// Wayland display, which complains if `XDG_RUNTIME_DIR` is not set. With a desktop nothing changes.
 ///
 /// # Safety
 /// Changes the environment, so it must run before the program starts its second thread.
 pub unsafe fn quieten_drivers() {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        // SAFETY: the caller states that no other thread can be reading the environment.
+        // SAFETY: the caller guarantees that no other thread reads the environment.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }
 
-/// Largest side of a picture drawn by the processor, pixels: what most GPUs allow as well, so that
-/// a size that works here works there.
+/// Largest side of a picture drawn by the processor, pixels. Most GPUs have the same limit, so a size that works here
+/// works there.
 const CPU_LARGEST_SIDE_PX: u32 = 16_384;
 
-/// Draws pictures into memory. Keep it between frames: making one costs more than a frame.
+/// Draws pictures into memory. Keep it between frames, because creating one costs more than a frame.
 pub struct Renderer {
     backend: Backend,
 }
@@ -52,16 +52,16 @@ impl Backend {
 }
 
 impl Renderer {
-    /// Opens the renderer that was asked for.
+    /// Opens the requested renderer.
     ///
     /// # Errors
-    /// Says which driver is missing and which package brings it. `Auto` and `Cpu` cannot fail.
+    /// Names the missing driver and the package that contains it. `Auto` and `Cpu` cannot fail.
     pub fn new(choice: RendererChoice) -> Result<Self> {
         let backend = match choice {
             RendererChoice::Vulkan => Backend::open(GpuKind::Vulkan)?,
             RendererChoice::Gl => Backend::open(GpuKind::Gl)?,
             RendererChoice::Cpu => Backend::Cpu,
-            // A page must not wait for a device.
+            // A browser's page must not wait for a device.
             RendererChoice::Auto if cfg!(target_arch = "wasm32") => Backend::Cpu,
             RendererChoice::Auto => Backend::open(GpuKind::Vulkan)
                 .or_else(|_| Backend::open(GpuKind::Gl))
@@ -70,7 +70,7 @@ impl Renderer {
         Ok(Self { backend })
     }
 
-    /// What draws, such as "vulkan: llvmpipe (LLVM 15.0.6, 256 bits)" or "cpu".
+    /// Name of the renderer, such as "vulkan: llvmpipe (LLVM 15.0.6, 256 bits)" or "cpu".
     pub fn name(&self) -> &str {
         match &self.backend {
             #[cfg(feature = "gpu")]
@@ -79,7 +79,7 @@ impl Renderer {
         }
     }
 
-    /// Largest width and height that this renderer draws, pixels.
+    /// Largest width and height of a picture, pixels.
     pub(crate) fn largest_side(&self) -> u32 {
         match &self.backend {
             #[cfg(feature = "gpu")]
@@ -91,7 +91,7 @@ impl Renderer {
     /// Draws a picture of `width` × `height` pixels.
     ///
     /// # Errors
-    /// Names `size` if it is empty or too large; otherwise says what the device reported.
+    /// Names `size` if it is empty or too large; otherwise gives the device's message.
     pub(crate) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
         self.check_size(width, height)?;
         match &mut self.backend {
@@ -101,7 +101,7 @@ impl Renderer {
         }
     }
 
-    /// Fails unless a picture of this size can be drawn.
+    /// Checks that a picture of this size can be drawn.
     ///
     /// # Errors
     /// Names `size`.

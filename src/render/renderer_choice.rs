@@ -1,4 +1,4 @@
-//! Renderers to choose from, and the kinds of GPU among them.
+//! The choice of a renderer, and the kinds of GPU.
 
 /// Which renderer to use.
 #[derive(
@@ -25,7 +25,7 @@ pub enum RendererChoice {
     Cpu,
 }
 
-/// The kinds of GPU that can be asked for.
+/// The kinds of GPU that can be requested.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum GpuKind {
     Vulkan,

@@ -1,4 +1,5 @@
-//! From a snapshot to a finished picture: primitives, then words, then the legend's strip; also several side by side.
+//! From a snapshot to a finished picture: primitives, then text, then the legend's strip. Also several scenes side by
+//! side.
 
 use glam::DVec2;
 use image::{RgbaImage, imageops};
@@ -13,11 +14,11 @@ use super::{Camera, Colour, DiscInstance, Picture, Renderer, Style};
 use crate::error::{Error, Result};
 use crate::sim::Snapshot;
 
-/// Draws a snapshot with scale bar and legend, `width` × `height` pixels in all. The camera looks
-/// at the part left of the legend; [`Style::camera`] makes one.
+/// Draws a snapshot with scale bar and legend, `width` × `height` pixels in all. The camera shows the part left of
+/// the legend; [`Style::camera`] makes one.
 ///
 /// # Errors
-/// Names `size` if it is empty or too large; otherwise says what the device reported.
+/// Names `size` if it is empty or too large; otherwise gives the device's message.
 pub fn draw_scene(
     renderer: &mut Renderer,
     snapshot: &Snapshot,
@@ -49,21 +50,21 @@ pub fn draw_scene(
     Ok(whole)
 }
 
-/// How dark the lines between scenes are.
+/// Opacity of the lines between scenes.
 const FRAME: f32 = 0.25;
 
-/// One of the scenes.
+/// One scene of a picture of several.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldPanel<'a> {
-    /// What is shown.
+    /// The snapshot shown.
     pub snapshot: &'a Snapshot,
-    /// What it is, in its upper left corner.
+    /// Title in the upper left corner.
     pub title: &'a str,
-    /// What came of it, in its lower right corner.
+    /// Result in the lower right corner.
     pub note: &'a str,
 }
 
-/// Size of each of the scenes on a picture of `size` pixels in all, with the legend at its right.
+/// Size of each scene on a picture of `size` pixels, with the legend on its right.
 pub fn panel_size(style: &Style, size: [u32; 2], count: usize, columns: usize) -> [u32; 2] {
     let [width, height] = size;
     let rows = count.div_ceil(columns.max(1)).max(1) as u32;
@@ -71,11 +72,11 @@ pub fn panel_size(style: &Style, size: [u32; 2], count: usize, columns: usize) -
     [across.max(1), (height / rows).max(1)]
 }
 
-/// Draws scenes in rows of `columns`, `width` × `height` pixels in all. The camera looks at one of them, which is
-/// of [`panel_size`].
+/// Draws scenes in rows of `columns`, `width` × `height` pixels in all. The camera is that of a single scene of
+/// [`panel_size`].
 ///
 /// # Errors
-/// Where there is none, and what [`draw_scene`] says.
+/// If there is no scene, and the errors of [`draw_scene`].
 pub fn draw_worlds(
     renderer: &mut Renderer,
     panels: &[WorldPanel<'_>],
@@ -96,7 +97,7 @@ pub fn draw_worlds(
     let words = TextStyle::new(text_px, palette.ink);
     let margin = (0.5 * text_px) as i64;
     for (index, panel) in panels.iter().enumerate() {
-        // The scale is the same in all of them: one bar says it.
+        // All scenes have the same scale, so one bar is enough.
         let alone = Style { scale_bar: style.scale_bar && index == 0, ..bare.clone() };
         let mut image = draw_scene(renderer, panel.snapshot, &alone, camera, across, down)?;
         let room = across as f32 - 2.0 * margin as f32;
@@ -120,13 +121,13 @@ pub fn draw_worlds(
     Ok(whole)
 }
 
-/// How far the borders of a cell fade towards the ground.
+/// How much the borders of a cell fade towards the ground.
 const BORDER_FADING: f32 = 0.4;
-/// Radius of the centre of attraction, as a part of the label's font size.
+/// Radius of the centre of attraction, as a fraction of the label's font size.
 const CENTRE_RADIUS_EM: f32 = 0.28;
 
-/// The picture of a snapshot, without words: see [`super::draw_scene`] for those. `width` and
-/// `height` are those of the scene alone, without the legend's strip.
+/// The picture of a snapshot without text, which [`super::draw_scene`] adds. `width` and `height` are those of the
+/// scene without the legend's strip.
 pub(crate) fn scene_picture(
     snapshot: &Snapshot,
     style: &Style,
@@ -148,7 +149,7 @@ pub(crate) fn scene_picture(
     let boundaries = &surroundings.boundaries;
     picture.push_links(boundary_links(boundaries, camera, size, text_px, palette.boundary));
     let placed = |position: DVec2, radius: f64, angle: f64, colour: Colour| {
-        // At its place, and a period on where it reaches over a border.
+        // At its place, and a period further if it reaches over a border.
         let reach = [position - radius, position + radius];
         let periodic = surroundings.periodic.into_iter();
         let images = periodic.flat_map(move |periodic| periodic.images(reach));
@@ -193,7 +194,7 @@ pub(crate) fn scene_picture(
     picture
 }
 
-/// A disc of the world, or none if it lies outside a picture of `size` pixels.
+/// A disc of the world, or `None` if it is outside a picture of `size` pixels.
 fn disc(
     style: &Style,
     camera: &Camera,
@@ -205,7 +206,7 @@ fn disc(
 ) -> Option<DiscInstance> {
     let offset = camera.offset_px(position);
     let radius = camera.pixels(radius);
-    // Written so that a position that is not a number is left out.
+    // Written so that a NaN position is left out.
     let shows = offset.abs().cmplt(half_size(size) + f64::from(radius) + 1.0).all();
     let palette = style.theme.palette();
     let fade = |colour: Colour| colour.mix(palette.ground, style.fading());

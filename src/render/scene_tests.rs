@@ -1,4 +1,4 @@
-//! What becomes of a snapshot on its way to a picture.
+//! Tests of the conversion of snapshots to pictures.
 
 use std::sync::Arc;
 

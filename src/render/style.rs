@@ -1,4 +1,4 @@
-//! How a scene is to be drawn: what colours mean, and what is shown beside the grains.
+//! The style of a picture: the meaning of colours, and what is shown beside the grains.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::camera::Margins;
 use super::{Camera, Colour};
 
-/// How far grains fade towards the ground beneath force chains.
+/// How much grains fade towards the ground beneath force chains.
 const FADING: f32 = 0.62;
-/// Height kept free below the scene for the scale bar, in font sizes.
+/// Free height below the scene for the scale bar, in font sizes.
 const SCALE_BAR_EM: f64 = 1.6;
 
 /// What the colour of a grain stands for.
@@ -33,7 +33,7 @@ pub enum ColourBy {
 }
 
 impl ColourBy {
-    /// True if its colours stand for numbers that a scale has to be found for.
+    /// True if the colours stand for numbers, which need a scale.
     pub(crate) fn has_scale(self) -> bool {
         !matches!(self, Self::PaperGreys | Self::Coordination)
     }
@@ -52,25 +52,24 @@ pub enum Theme {
     Dark,
 }
 
-/// How a scene is to be drawn.
+/// Style of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Style {
     /// What the colours of the grains stand for.
     pub colour_by: ColourBy,
-    /// Values at the two ends of the colours, in the units that [`ColourBy`] states; taken from
-    /// the snapshot if absent. Frames of one animation should share one range.
+    /// Values at the two ends of the colours, in the units of [`ColourBy`]; taken from the snapshot if absent. Frames
+    /// of one animation should share one range.
     pub range: Option<(f64, f64)>,
     /// True if contact forces are drawn as links, with paler grains beneath.
     pub show_forces: bool,
-    /// The |N| that is drawn at full width, N; the 95th percentile of the snapshot if absent.
+    /// The |N| at full width, N; the 95th percentile of the snapshot if absent.
     pub force_reference: Option<f64>,
     /// True if arrows show the velocities of the grains.
     pub show_velocities: bool,
-    /// The speed that is drawn at full length, m/s; a round number above the fastest grain's if
-    /// absent.
+    /// The speed at full length, m/s; a round number above the fastest grain's if absent.
     pub speed_reference: Option<f64>,
-    /// True if arrows show how walls and fixed discs move, and what drives them.
+    /// True if arrows show how walls and fixed discs move, and the forces that drive them.
     pub show_motions: bool,
     /// True if grains have an outline.
     pub outlines: bool,
@@ -110,7 +109,7 @@ pub(crate) struct Palette {
     pub outline: Colour,
     pub fixed: Colour,
     pub boundary: Colour,
-    /// Forces that push. With `pull`, a pair that colour-blind people tell apart (Okabe & Ito).
+    /// Forces that push. With `pull`, a pair that colour-blind people can distinguish (Okabe & Ito).
     pub push: Colour,
     pub pull: Colour,
 }
@@ -144,12 +143,12 @@ impl Theme {
 impl Style {
     /// Font size of labels on a picture of this size, pixels.
     pub(crate) fn text_px(&self, width: u32, height: u32) -> f32 {
-        // 16 px at 800 × 500; larger pictures are read from further away, but not in proportion.
+        // 16 px at 800 × 500. Larger pictures are viewed from a longer distance, but not in proportion.
         let side = f64::from(width).min(1.6 * f64::from(height));
         (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
     }
 
-    /// How far grains fade towards the ground, 0 … 1: beneath force chains they must.
+    /// How much grains fade towards the ground, 0 … 1. They must fade beneath force chains.
     pub(crate) fn fading(&self) -> f32 {
         if self.show_forces { FADING } else { 0.0 }
     }
@@ -161,15 +160,15 @@ impl Style {
         self.legend && needed
     }
 
-    /// Width of the strip at the right that the legend takes, pixels.
+    /// Width of the legend's strip on the right, pixels.
     pub(crate) fn legend_width(&self, width: u32, height: u32) -> u32 {
         let strip = (7.0 * self.text_px(width, height)).ceil() as u32;
-        // A picture too narrow for both shows the scene.
+        // A picture too narrow for both shows only the scene.
         if self.has_legend() && width > 2 * strip { strip } else { 0 }
     }
 
-    /// The camera that shows the box from `min` to `max` (m) as large as possible on a picture of
-    /// this size, and leaves room for legend and scale bar so that they cover nothing.
+    /// The camera that shows the box from `min` to `max` (m) as large as possible on a picture of this size, with
+    /// space for legend and scale bar so that they cover nothing.
     pub fn camera(&self, min: DVec2, max: DVec2, width: u32, height: u32) -> Camera {
         let text = f64::from(self.text_px(width, height));
         let margin = text.min(0.05 * f64::from(width.min(height)));

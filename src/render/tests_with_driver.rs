@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 
 use super::*;
 
-/// Every GPU of this machine. None at all is a failure: nothing would be compared.
+/// All GPUs of this machine. If there is none, the test fails, because nothing would be compared.
 fn gpus() -> Vec<Renderer> {
     let found: Vec<Renderer> = [RendererChoice::Vulkan, RendererChoice::Gl]
         .into_iter()

@@ -1,8 +1,8 @@
-//! Words on finished pictures, set on the processor so that they are the same on every renderer.
+//! Text on finished pictures, set on the processor so that it is the same with every renderer.
 //!
-//! A [`TextBlock`] is laid out once, as a mask of pixel coverage, and can then be measured, turned and drawn anywhere.
-//! DejaVu Sans Condensed is free, and has the Greek letters, superscripts and signs that physics needs. It is part of
-//! the program, so that words look the same on every machine.
+//! A [`TextBlock`] is laid out once, as a mask of pixel coverage, and can then be measured, turned and drawn
+//! anywhere. DejaVu Sans Condensed is free and has the Greek letters, superscripts and signs that physics needs. It
+//! is part of the program, so that text looks the same on every machine.
 
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ static BOLD: LazyLock<FontRef> =
     LazyLock::new(|| embedded(include_bytes!("../../assets/fonts/DejaVuSansCondensed-Bold.ttf")));
 
 fn embedded(bytes: &'static [u8]) -> FontRef<'static> {
-    // The file is part of the program and a test sets text in it.
+    // The font is part of the program, and a test sets text in it.
     FontRef::try_from_slice(bytes).expect("an embedded font is a font")
 }
 
@@ -33,7 +33,7 @@ pub(crate) struct TextStyle {
     pub size_px: f32,
     pub weight: Weight,
     pub colour: Colour,
-    /// How lines lie relative to each other.
+    /// Alignment of the lines relative to each other.
     pub lines: Align,
 }
 
@@ -61,8 +61,8 @@ impl TextStyle {
         font.as_scaled(PxScale::from(self.size_px * per_em))
     }
 
-    /// Places the letters of one line, from x = 0 on the baseline y = 0, y down; gives them and
-    /// the width. `_{…}` sets letters below the baseline, `^{…}` above it.
+    /// Places the letters of one line, from x = 0 on the baseline y = 0, y down. Returns them and the width. `_{…}`
+    /// sets letters below the baseline, `^{…}` above it.
     pub(super) fn set(&self, line: &str) -> (Vec<Glyph>, f32) {
         let mut glyphs = Vec::new();
         let mut pen = 0.0;
@@ -83,7 +83,7 @@ impl TextStyle {
         (glyphs, pen)
     }
 
-    /// The shape of a letter that [`Self::set`] placed, moved; none for a space.
+    /// The shape of a letter that [`Self::set`] placed, after moving it; `None` for a space.
     pub(super) fn shape(&self, mut glyph: Glyph, x: f32, y: f32) -> Option<OutlinedGlyph> {
         glyph.position += point(x, y);
         self.font().outline_glyph(glyph)
@@ -93,12 +93,12 @@ impl TextStyle {
         self.set(line).1
     }
 
-    /// From the top of a line to its baseline, pixels.
+    /// Distance from the top of a line to its baseline, pixels.
     pub(super) fn ascent(&self) -> f32 {
         self.font().ascent()
     }
 
-    /// Distance from line to line, pixels.
+    /// Distance between lines, pixels.
     pub(crate) fn line_height(&self) -> f32 {
         self.font().height()
     }
@@ -106,7 +106,7 @@ impl TextStyle {
     /// True if the font has a shape for this letter.
     #[cfg(test)]
     fn has(&self, letter: char) -> bool {
-        // Glyph 0 is the box that stands for missing letters.
+        // Glyph 0 is the box for missing letters.
         self.font().glyph_id(letter).0 != 0
     }
 }
@@ -124,7 +124,7 @@ impl Script {
         if self == Self::Line { 1.0 } else { 0.7 }
     }
 
-    /// How far they stand below the baseline, in units of the line's font size.
+    /// Offset below the baseline, in units of the line's font size.
     fn drop(self) -> f32 {
         match self {
             Self::Line => 0.0,
@@ -134,7 +134,7 @@ impl Script {
     }
 }
 
-/// Cuts a line into runs of one level. A brace that never closes is text.
+/// Cuts a line into runs of one level. A brace without its partner is text.
 fn runs(line: &str) -> Vec<(&str, Script)> {
     let mut found = Vec::new();
     let mut rest = line;
@@ -149,8 +149,8 @@ fn runs(line: &str) -> Vec<(&str, Script)> {
     found
 }
 
-/// Where a block lies relative to the point at which it is drawn, along one direction. Also how
-/// the lines of a block lie relative to each other.
+/// Alignment of a block relative to the point at which it is drawn, along one direction; also of the lines of a block
+/// relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Align {
     /// The point is at the left or top edge.
@@ -173,12 +173,12 @@ impl Align {
     }
 }
 
-/// Text laid out: a mask of pixel coverage and a colour.
+/// Laid-out text: a mask of pixel coverage and a colour.
 #[derive(Clone, Debug)]
 pub(crate) struct TextBlock {
     width: u32,
     height: u32,
-    /// 0 … 1, row by row.
+    /// Coverage 0 … 1, row by row.
     coverage: Vec<f32>,
     colour: Colour,
 }
@@ -202,8 +202,8 @@ impl TextBlock {
         block
     }
 
-    /// Lays text out, breaking lines at spaces so that none is wider than `largest_width_px`. If a
-    /// single word is wider, the text becomes smaller.
+    /// Lays text out and breaks lines at spaces, so that none is wider than `largest_width_px`. If a single word is
+    /// wider, the text becomes smaller.
     pub(crate) fn wrapped(text: &str, style: &TextStyle, largest_width_px: f32) -> Self {
         // A block is up to three pixels wider than its longest line.
         let largest = (largest_width_px - 3.0).max(1.0);
@@ -258,13 +258,13 @@ impl TextBlock {
         self.height
     }
 
-    /// Part of the block that ink covers, 0 … 1.
+    /// Fraction of the block that ink covers, 0 … 1.
     #[cfg(test)]
     pub(crate) fn ink(&self) -> f32 {
         self.coverage.iter().sum::<f32>() / self.coverage.len().max(1) as f32
     }
 
-    /// Turned by 90° anticlockwise: reads upwards, as the label of a vertical axis.
+    /// The block turned by 90° anticlockwise: it reads upwards, like the label of a vertical axis.
     pub(crate) fn turned(&self) -> Self {
         let (width, height) = (self.height, self.width);
         let mut coverage = Vec::with_capacity(self.coverage.len());
@@ -277,8 +277,8 @@ impl TextBlock {
         Self { width, height, coverage, colour: self.colour }
     }
 
-    /// Draws the block at the point (`x`, `y`), pixels from the upper left corner. What lies
-    /// outside the image is left out.
+    /// Draws the block at the point (`x`, `y`), pixels from the upper left corner. Parts outside the image are left
+    /// out.
     pub(crate) fn draw(&self, image: &mut RgbaImage, x: i64, y: i64, across: Align, down: Align) {
         let left = x - i64::from(across.share(self.width));
         let top = y - i64::from(down.share(self.height));
@@ -319,7 +319,7 @@ mod tests {
 
     #[test]
     fn the_size_is_the_em() {
-        // An em dash of this font is exactly 0.9 em wide, as its condensed cut makes it.
+        // An em dash of this condensed font is exactly 0.9 em wide.
         let width = TextStyle::new(100.0, Colour::BLACK).width("—");
         assert!((width - 90.0).abs() < 1.0, "{width}");
     }

@@ -1,8 +1,7 @@
 //! Fixed shapes as thin dark lines, solids with short hatching on their inside, and periodic borders as dashes.
 //!
-//! Lines are clipped to the picture in f64, so that a wall that goes on for ever, or starts a million diameters away,
-//! still becomes f32 pixels without loss. Hatching keeps its place in the world, not in the picture: it moves with the
-//! camera.
+//! Lines are clipped to the picture in f64, so that an infinite wall, or one that starts a million diameters away,
+//! becomes f32 pixels without loss. Hatching has a fixed place in the world, so it moves with the camera.
 
 use glam::DVec2;
 
@@ -10,7 +9,7 @@ use super::camera::half_size;
 use super::{Camera, Colour, LinkInstance};
 use crate::world::{Boundary, Edge, Periodic};
 
-// All in units of the font size of the picture's labels, so that prints of any size look alike.
+// All in units of the font size of the picture's labels, so that prints of all sizes look alike.
 
 /// Half the width of a wall's line.
 const LINE_HALF_WIDTH_EM: f64 = 0.0625;
@@ -18,12 +17,12 @@ const LINE_HALF_WIDTH_EM: f64 = 0.0625;
 const HATCH_HALF_WIDTH_EM: f64 = 0.033;
 /// Distance between hatching strokes along the wall.
 const HATCH_SPACING_EM: f64 = 0.6;
-/// How deep hatching reaches into a solid, and as far along it: strokes lean by 45°.
+/// Depth of hatching in a solid, and its extent along the surface: strokes are inclined by 45°.
 const HATCH_DEPTH_EM: f64 = 0.45;
 
 /// Half the width of a dash.
 const DASH_HALF_WIDTH_EM: f64 = 0.035;
-/// Length of a dash, and of it with the gap after it.
+/// Length of a dash, and of a dash with the gap after it.
 const DASH_EM: f64 = 0.45;
 const DASH_SPACING_EM: f64 = 0.9;
 
@@ -33,12 +32,12 @@ struct WallLines<'a> {
     colour: Colour,
     /// Font size of the picture's labels, pixels.
     em: f64,
-    /// Half the size of the picture and a border that hides the round caps, pixels.
+    /// Half the size of the picture plus a border that hides the round caps, pixels.
     reach: DVec2,
     links: Vec<LinkInstance>,
 }
 
-/// The links of all `boundaries` that show in a picture of `size` pixels.
+/// The links of all `boundaries` that are visible in a picture of `size` pixels.
 pub(super) fn boundary_links(
     boundaries: &[Boundary],
     camera: &Camera,
@@ -80,8 +79,8 @@ impl WallLines<'_> {
         }
     }
 
-    /// A surface from `from` to `to`, pixels, with the solid on its right, hatched at whole numbers
-    /// of spacings from `anchor`.
+    /// A surface from `from` to `to`, pixels, with the solid on its right, hatched at whole multiples of the spacing
+    /// from `anchor`.
     fn solid_edge(&mut self, anchor: DVec2, from: DVec2, to: DVec2) {
         let Some([start, end]) = clip(from, to, self.reach) else { return };
         self.link(start, end, LINE_HALF_WIDTH_EM);
@@ -92,7 +91,7 @@ impl WallLines<'_> {
         let stroke = (-along.perp() - along) * (HATCH_DEPTH_EM * self.em);
         let spacing = HATCH_SPACING_EM * self.em;
         let number = |point: DVec2| (point - anchor).dot(along) / spacing;
-        // Strokes lean backwards: one at the very start would stick out of a polygon's corner.
+        // Strokes are inclined backwards: one at the very start would stick out of a polygon's corner.
         let first = (number(start) + HATCH_DEPTH_EM / HATCH_SPACING_EM).ceil() as i64;
         for index in first..=number(end).floor() as i64 {
             let foot = anchor + along * (index as f64 * spacing);
@@ -106,8 +105,7 @@ impl WallLines<'_> {
     }
 }
 
-/// The part of a segment inside the box from −`reach` to `reach`, if any. None if an end is not
-/// finite.
+/// The part of a segment inside the box from −`reach` to `reach`, if any. `None` if an end is not finite.
 pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
     let span = to - from;
     if !span.is_finite() {
@@ -128,7 +126,7 @@ pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
     (enter <= leave).then(|| [from + span * enter, from + span * leave])
 }
 
-/// The dashes of the borders that show in a picture of `size` pixels.
+/// The dashes of the borders that are visible in a picture of `size` pixels.
 pub(super) fn border_links(
     periodic: Periodic,
     camera: &Camera,

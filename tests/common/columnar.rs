@@ -1,4 +1,4 @@
-//! Parquet files made by hand, of which every number can be a lie.
+//! Handmade Parquet files in which each number can be wrong.
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
@@ -25,7 +25,7 @@ impl Fields {
     }
 
     fn whole(mut self, id: u8, number: i64) -> Self {
-        // i64 and i32 are written alike.
+        // i64 and i32 have the same encoding.
         self = self.head(id, if i32::try_from(number).is_ok() { 5 } else { 6 });
         varint(&mut self.bytes, ((number << 1) ^ (number >> 63)) as u64);
         self
@@ -64,30 +64,30 @@ impl Fields {
     }
 }
 
-/// What a file of three columns says of itself; the default is true.
+/// Metadata of a file of three columns. The default is correct.
 #[derive(Clone, Debug)]
 pub struct Columnar {
-    /// Rows of the file, …
+    /// Rows of the file.
     pub rows: i64,
-    /// … of its group, …
+    /// Rows of its row group.
     pub group_rows: i64,
-    /// … and values of a page.
+    /// Values of a page.
     pub values: i64,
     /// Columns of the schema.
     pub children: i64,
-    /// Groups around the columns, each in the one before.
+    /// Groups around the columns, each inside the previous one.
     pub depth: usize,
-    /// 0 as it is, 1 by snappy.
+    /// Compression: 0 none, 1 snappy.
     pub codec: i64,
-    /// 0 plain, 8 by a dictionary that is not there, 6 and 7 with counts of their own.
+    /// 0 plain, 8 with a missing dictionary, 6 and 7 with their own counts.
     pub encoding: i64,
-    /// Bytes of a page, unpacked.
+    /// Bytes of an uncompressed page.
     pub unpacked: i64,
-    /// Bytes of a page in the file; none: as many as there are.
+    /// Bytes of a page in the file; `None` gives the real number.
     pub packed: Option<i64>,
     /// Values of a dictionary before the page, if there is one.
     pub dictionary: Option<i64>,
-    /// What is in a page.
+    /// Contents of a page.
     pub page: Vec<u8>,
 }
 

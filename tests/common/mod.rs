@@ -1,5 +1,5 @@
-//! What the tests of physics share: the names that all of them use, short ways to write scenes and to look at runs, and
-//! comparisons that say what differs.
+//! Helpers of the physics tests: common imports, short ways to build scenes and inspect runs, and comparisons that
+//! report the difference.
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
@@ -25,7 +25,7 @@ pub const G: f64 = 9.8;
 pub const LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 /// The plane without friction.
 pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, cohesion: true };
-/// The plane with friction between grains that do not turn.
+/// The plane with friction and without rotation.
 pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
 
 /// Parameters with the shifted cone.
@@ -44,7 +44,7 @@ pub fn range(bond: f64, time_step_secs: f64) -> Parameters {
     }
 }
 
-/// A scene under `range`, solved as loosely as by default.
+/// A scene under `range` with the default solver settings.
 pub fn ranged(
     physics: Physics,
     gravity: DVec2,
@@ -63,12 +63,12 @@ pub fn weightless(grain: Grain) -> Grain {
     Grain { feels_gravity: false, ..grain }
 }
 
-/// As far as rounding allows.
+/// A tolerance near rounding.
 pub fn tight() -> SolverSettings {
     to_residual(1e-12)
 }
 
-/// As by default, but nearly as far as rounding allows.
+/// The default settings with a tolerance near rounding.
 pub fn certain() -> SolverSettings {
     SolverSettings { tolerance: 1e-10, ..SolverSettings::default() }
 }
@@ -81,7 +81,7 @@ pub fn to_residual(tolerance: f64) -> SolverSettings {
     SolverSettings { max_sweeps: 20_000, ..solved_by(Method::Nsgs, tolerance) }
 }
 
-/// Grains under uniform gravity and nothing else.
+/// Grains under uniform gravity.
 pub fn scene(
     physics: Physics,
     gravity: DVec2,
@@ -112,7 +112,7 @@ pub fn scene(
     }
 }
 
-/// Grains that fall with g.
+/// Grains under gravity g.
 pub fn under_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
     scene(Physics::FULL, -G * DVec2::Y, parameters, grains)
 }
@@ -121,7 +121,7 @@ pub fn without_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
     scene(Physics::FULL, DVec2::ZERO, parameters, grains)
 }
 
-/// Every stepper, with every method where it takes one.
+/// All steppers, each with every method if it uses methods.
 pub fn every_way() -> Vec<(Stepper, Method)> {
     let of = |&stepper: &Stepper| {
         let count = if stepper.uses_method() { METHODS.len() } else { 1 };
@@ -130,7 +130,7 @@ pub fn every_way() -> Vec<(Stepper, Method)> {
     Stepper::ALL.iter().flat_map(of).collect()
 }
 
-/// Those of [`every_way`] whose impulses are what moves the grains, so that momentum and energy balance.
+/// The pairs of [`every_way`] that move the grains by their impulses, so that momentum and energy balance.
 pub fn every_way_that_balances() -> Vec<(Stepper, Method)> {
     every_way().into_iter().filter(|way| way.0 != Stepper::Avbd).collect()
 }
@@ -139,7 +139,7 @@ pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")
 }
 
-/// Where grains are and how they move, bit by bit: `==` would take −0 for 0 and a NaN for a difference.
+/// Bits of all positions and velocities: `==` would take −0 for 0, and NaN for a difference.
 pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     let grains = &simulation.world().grains;
     let of = |k: usize| {
@@ -150,8 +150,8 @@ pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     (0..grains.len()).map(of).collect()
 }
 
-/// How far the velocities of the first problem of the next step are from those of the model of friction that it is solved
-/// under, by the measure that ends its solve, m/s.
+/// Velocity error of the next step's first problem against the friction model that is solved, by the measure that
+/// stops the solver, m/s.
 pub fn error_against_model(simulation: &Simulation) -> f64 {
     struct OfModel(SolverSettings);
 
@@ -177,7 +177,7 @@ pub fn moving(position: DVec2, radius: f64, velocity: DVec2) -> Grain {
     Grain { velocity, ..Grain::at_rest(position, radius) }
 }
 
-/// Fails unless the two differ by at most `tolerance` times the larger one.
+/// Panics unless the two differ by at most `tolerance` times the larger one.
 #[track_caller]
 pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
     let scale = found.abs().max(expected.abs());
@@ -192,8 +192,8 @@ pub fn random(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
 }
 
-/// `count` discs, pressed together on a lattice over a rough base so that about
-/// half of all neighbours overlap, with velocities of about `speed` (m/s) and like spins.
+/// `count` discs pressed together on a lattice over a rough base, so that about half of all neighbours overlap.
+/// Velocities and spins times radius are about `speed` (m/s).
 pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters) -> Scene {
     let mut random = random(seed);
     let diameter = 5e-3;
@@ -220,9 +220,9 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
     Scene { fixed_discs: rough_base(columns as f64 + 2.0, diameter), ..under_g(parameters, grains) }
 }
 
-/// Logs at rest, and beside them a spinning disc that falls on the floor, one that has to be pushed out
-/// of it, and one whose bond to it is stretched and holds. None touches another: where friction leaves
-/// more than one solution, rounding would choose.
+/// Logs at rest; beside them a spinning disc that falls on the floor, a disc that overlaps the floor, and a disc
+/// whose stretched bond to the floor survives. These discs touch no other grain: with friction, several solutions
+/// would exist and rounding would choose one.
 pub fn at_rest_and_falling() -> Scene {
     let mut scene = logs(1.0);
     let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
@@ -280,7 +280,7 @@ pub fn after(scene: &Scene, steps: usize) -> Simulation {
     run
 }
 
-/// The sentence that a scene is refused with.
+/// The error message of a refused scene.
 #[track_caller]
 pub fn refused(scene: &Scene) -> String {
     let said = scene.simulation().map(|_| ()).expect_err("a scene with a fault").to_string();
@@ -288,7 +288,7 @@ pub fn refused(scene: &Scene) -> String {
     said
 }
 
-/// A scene stepped in each of these ways, with the way in words.
+/// The scene in each of these ways to step, with the name of the way.
 pub fn in_each_way(
     scene: &Scene,
     ways: Vec<(Stepper, Method)>,
@@ -300,8 +300,8 @@ pub fn in_each_way(
     ways.into_iter().map(of)
 }
 
-/// Takes a step: what it came to, what works leave unexplained of its change of kinetic energy, and the sum of the
-/// sizes of these works and of both energies, J.
+/// Takes a step. Returns its observables, the change of kinetic energy that the works do not explain, and the sum of
+/// the magnitudes of all works and both energies, J.
 pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     let before = run.observables().kinetic_energy;
     let after = *run.step().expect("a finite state");
@@ -331,7 +331,7 @@ pub trait Look {
         &self.grains().velocities
     }
 
-    /// Speed of the fastest, m/s.
+    /// Highest speed of a grain, m/s.
     fn fastest(&self) -> f64 {
         self.velocities().iter().map(|velocity| velocity.length()).fold(0.0, f64::max)
     }
@@ -347,10 +347,10 @@ pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
 }
 
-/// The steppers that solve no problem of the whole step, and whose impulses are what moves the grains.
+/// The steppers that do not solve a problem of the whole step and move the grains by their impulses.
 pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
 
-/// Those, and the one whose bodies are moved a little past their impulses.
+/// [`SCHEMES`] and `avbd`, which moves bodies slightly further than their impulses.
 pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
 
 pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
@@ -384,7 +384,7 @@ pub fn effective_mass(simulation: &Simulation) -> f64 {
     1.0 / (1.0 / masses[0] + 1.0 / masses[1])
 }
 
-/// Fails unless a sentence is this one, or begins so where an ellipsis ends what is expected.
+/// Panics unless the message is `expected`, or begins with it if `expected` ends with an ellipsis.
 #[track_caller]
 pub fn assert_said(said: &str, expected: &str) {
     match expected.strip_suffix('…') {
@@ -393,10 +393,10 @@ pub fn assert_said(said: &str, expected: &str) {
     }
 }
 
-/// A change that spoils a scene, and the sentence that it is refused with then.
+/// The expected error message, and the change that makes the scene wrong.
 pub type Refusal<'a> = (&'a str, &'a dyn Fn(&mut Scene));
 
-/// Holds the refusals of a scene that is spoilt in each of these ways against what is expected.
+/// Checks the error messages of a scene after each of these changes.
 #[track_caller]
 pub fn refuses(good: &Scene, cases: &[Refusal]) {
     for (expected, spoil) in cases {
@@ -406,7 +406,7 @@ pub fn refuses(good: &Scene, cases: &[Refusal]) {
     }
 }
 
-/// Holds a property to so many random inputs, the same ones every time.
+/// Checks a property for `cases` random inputs, which are the same each time.
 pub fn for_random<S: proptest::strategy::Strategy>(
     cases: u32,
     inputs: S,
@@ -419,7 +419,7 @@ pub fn for_random<S: proptest::strategy::Strategy>(
     runner.run(&inputs, property).unwrap_or_else(|failure| panic!("{failure}"));
 }
 
-/// Halves a stretch so many times: up to where something holds that holds at `low` and does not at `high`.
+/// Finds the value up to which `holds` is true, by bisection between `low` (true) and `high` (false).
 #[track_caller]
 pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) -> bool) -> f64 {
     assert!(holds(low) && !holds(high), "the border is between {low} and {high}");
@@ -430,7 +430,7 @@ pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) ->
     low
 }
 
-/// Each of some with each of others.
+/// All pairs of two collections.
 pub fn pairs<A: Clone, B: Clone>(
     some: impl IntoIterator<Item = A>,
     others: impl IntoIterator<Item = B>,
@@ -440,7 +440,7 @@ pub fn pairs<A: Clone, B: Clone>(
     some.into_iter().flat_map(with_others).collect()
 }
 
-/// The same of three kinds.
+/// All triples of three collections.
 pub fn triples<A: Clone, B: Clone, C: Clone>(
     some: impl IntoIterator<Item = A>,
     others: impl IntoIterator<Item = B>,

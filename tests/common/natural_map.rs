@@ -1,11 +1,11 @@
-//! The judge of a solved step, written anew from the design: it takes positions, velocities and
-//! impulses, and none of the solver's own arithmetic.
+//! An independent check of a solved step, written from the design. It uses positions, velocities and impulses, and
+//! none of the solver's arithmetic.
 
 use glam::DVec2;
 use slump::sim::Simulation;
 use slump::world::{FrictionCone, Grains, Motion, MotionCourse, Parameters};
 
-/// One contact as the design describes it, from world data alone.
+/// A contact as the design describes it, from world data only.
 pub struct Judged {
     pub normal_mass: f64,
     pub tangential_mass: f64,
@@ -14,12 +14,12 @@ pub struct Judged {
     pub before: [f64; 2],
     pub after: [f64; 2],
     pub free: [f64; 2],
-    /// What the law adds to v_n at the end, m/s: ρ times that at the beginning, or what lets grains close a gap that is within
+    /// Term that the law adds to v_n at the end, m/s: ρ times the initial v_n, or the speed that closes a gap within
     /// the touch tolerance.
     pub rebound: f64,
 }
 
-/// Gaps within which grains touch, in mean diameters, and part of the touch tolerance.
+/// Gap up to which grains touch: in mean diameters, and as part of the touch tolerance.
 const ROUNDING: f64 = 1e-4;
 
 /// Velocities and spins of the grains, for [`judge`].
@@ -27,7 +27,8 @@ type Velocities = (Vec<DVec2>, Vec<f64>);
 
 const NONE: (DVec2, f64) = (DVec2::ZERO, 0.0);
 
-/// How what is fixed goes and how fast its surface goes round it, m/s; boundaries are half-spaces, and courses straight.
+/// Velocity of a fixed body and speed of its surface along itself, m/s. Boundaries are half-spaces and courses are
+/// straight.
 fn wall_velocity(simulation: &Simulation, other: u32) -> (DVec2, f64) {
     let world = simulation.world();
     let body = other as usize - world.grains.len();
@@ -97,7 +98,7 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     .collect()
 }
 
-/// The residual's ‖error‖ and ‖scale‖ (N·s), and how far impulses are outside their cones (N·s).
+/// The residual's ‖error‖ and ‖scale‖, and the distance of the impulses from their cones, N·s.
 pub fn natural_map(simulation: &Simulation, before: &Grains) -> (f64, f64, f64) {
     let Parameters { friction, cone, .. } = *simulation.parameters();
     let (mut error, mut scale, mut outside) = (0.0, 0.0, 0f64);

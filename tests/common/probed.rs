@@ -1,4 +1,4 @@
-//! What ffprobe tells of a video.
+//! Properties of a video, read by ffprobe.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,7 +10,7 @@ pub struct Probed {
     pub size: [u64; 2],
     pub rate_hz: String,
     pub pictures: usize,
-    /// The numbers, from 1 on, of the pictures that need none before them.
+    /// Numbers of the key frames, from 1.
     pub key_pictures: Vec<usize>,
     pub comment: String,
 }

@@ -1,4 +1,4 @@
-//! The program from outside: how it is started, and what it says and leaves.
+//! The program from outside: starting it, and reading its messages and files.
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
@@ -9,11 +9,11 @@ pub use std::time::{Duration, Instant};
 pub use serde_json::Value;
 pub use tempfile::TempDir;
 
-/// Longer than anything that is waited for takes on a busy machine.
+/// Longer than anything that a test waits for, even on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The program that was built with these tests, or that which `SLUMP_PROGRAM` names: one with fewer features is tested
-/// without another build of all tests. `line` has its first arguments, with blanks between them.
+/// The program that was built with these tests, or the program that `SLUMP_PROGRAM` names: a program with fewer
+/// features is tested without rebuilding the tests. `line` has the first arguments, separated by blanks.
 pub fn slump(line: &str) -> Command {
     let built = || assert_cmd::cargo::cargo_bin!("slump").to_path_buf();
     let mut command =
@@ -24,8 +24,8 @@ pub fn slump(line: &str) -> Command {
     command
 }
 
-/// Has a program start with signals as a terminal gives them, even if the tests were started with some ignored (`nohup`, a job
-/// in the background of a script): a program inherits ignored signals, and Slump rightly leaves them ignored.
+/// Gives a program the signal handling of a terminal, even if the tests were started with ignored signals (`nohup`, a
+/// background job of a script): programs inherit ignored signals, and Slump leaves them ignored.
 #[cfg(unix)]
 fn heed_signals(command: &mut Command) {
     let default = || {
@@ -97,7 +97,7 @@ pub fn succeed(command: &mut Command) -> String {
     said
 }
 
-/// Runs a program that is to end with code 2, and gives what it says on stderr.
+/// Runs a program that must end with code 2. Returns its stderr.
 #[track_caller]
 pub fn failure(command: &mut Command) -> String {
     let output = run(command);
@@ -106,7 +106,7 @@ pub fn failure(command: &mut Command) -> String {
     said
 }
 
-/// Runs a program that is to refuse in one sentence, and gives that.
+/// Runs a program that must refuse with one sentence. Returns the sentence.
 #[track_caller]
 pub fn sentence(command: &mut Command) -> String {
     let said = failure(command);
@@ -122,7 +122,7 @@ pub fn wait_for(what: &str, mut is_there: impl FnMut() -> bool) {
     }
 }
 
-/// Sends a signal to a program, or to a group of programs where the number is below 0.
+/// Sends a signal to a process, or to a process group if the number is negative.
 pub fn send(signal: &str, process: i64) {
     let number = match signal {
         "HUP" => libc::SIGHUP,
@@ -132,12 +132,12 @@ pub fn send(signal: &str, process: i64) {
         other => panic!("{other} is not among the signals that tests send"),
     };
     let process = process.try_into().expect("the number of a process");
-    // SAFETY: `kill` reads nothing but its two numbers.
+    // SAFETY: `kill` reads only its two numbers.
     let sent = unsafe { libc::kill(process, number) };
     assert_eq!(sent, 0, "{signal} to {process}: {}", std::io::Error::last_os_error());
 }
 
-/// Waits until a program has ended, and gives its code.
+/// Waits until a program ends. Returns its exit code.
 pub fn ended(child: &mut Child) -> Option<i32> {
     let mut status = None;
     wait_for("the end", || {
@@ -147,7 +147,7 @@ pub fn ended(child: &mut Child) -> Option<i32> {
     status.and_then(|status| status.code())
 }
 
-/// Kills a program as a loss of power would end it.
+/// Kills a program with SIGKILL, as a loss of power would end it.
 pub fn kill(child: &mut Child) {
     child.kill().expect("kill -9");
     child.wait().expect("it ended");

@@ -1,4 +1,5 @@
-//! A pile at rest is stepped without a single allocation. Each thread counts its own; so small a pile is not shared out.
+//! Steps of a pile at rest allocate nothing. Each thread counts its own allocations; a pile this small uses one
+//! thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -15,7 +16,7 @@ fn allocations() -> u64 {
     ALLOCATIONS.get()
 }
 
-// SAFETY: every call goes to the system's allocator as it came.
+// SAFETY: each call is passed on unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(allocations() + 1);

@@ -1,4 +1,4 @@
-//! The physics: exact truths, what holds of any scene, methods and steppers against each other, where they break.
+//! The physics: exact solutions, properties of all scenes, methods and steppers against each other, and their limits.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! The same run is the same, bit for bit; and physics does not depend on how a scene is written.
+//! Equal runs are bitwise equal, and the physics does not depend on how a scene is written.
 
 use crate::common::*;
 
@@ -31,11 +31,11 @@ fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
 
 #[test]
 fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
-    // Whoever came first has made the pool; on a machine with one core there is nothing to be shared out.
+    // The first test to arrive has made the pool. With one core there is nothing to distribute.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(3).build_global();
     assert!(rayon::current_num_threads() > 1, "several threads");
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    // Some touch, others come near: a lattice whose discs go this way and that.
+    // A lattice of discs with different velocities: some touch, others are close.
     let at = |k: usize| {
         let [column, row] = [k % 110, k / 110].map(|number| number as f64);
         let shift = 0.05 * DVec2::new((k as f64).sin(), (1.7 * k as f64).cos());
@@ -45,7 +45,8 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
     for (stepper, method) in every_way() {
         let mut scene = under_g(parameters(20.0, 1e-3, 0.3, 0.5), (0..110 * 160).map(at).collect());
         (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
-        // What a direct method does is its own; three steps of it would take the time of all the others.
+        // Direct methods run the same code with any number of threads; three of their steps would take as long as all
+        // the rest.
         if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
             continue;
         }
@@ -76,7 +77,7 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
         pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
         (pile, 100, 20, 0.01)
     };
-    // Steps 50 … 250 of the first build the candidate list anew at times that depend on the past.
+    // Steps 50 to 250 of the first scene rebuild the candidate list at times that depend on the past.
     let runs = ALL_SCHEMES.map(by_scheme);
     for (scene, before, later, least) in
         [(collapse(), 50, 200, 0.0), (bonded, 30, 30, -1.0)].into_iter().chain(runs)
@@ -115,7 +116,7 @@ fn a_moved_scene_moves_alike() {
         let mut there = here.clone();
         there.grains.iter_mut().for_each(|grain| grain.position += shift);
         there.fixed_discs.iter_mut().for_each(|disc| disc.position += shift);
-        // A few steps: a pile is chaotic, and roundings grow.
+        // Only a few steps, because piles are chaotic and rounding errors grow.
         let (here, there) = (after(&here, 5), after(&there, 5));
         let (a, b) = (here.grains(), there.grains());
         assert!(here.observables().contacts > 60, "{}", here.observables().contacts);
@@ -142,7 +143,7 @@ fn a_mirrored_scene_moves_mirrored() {
         });
         let left = after(&scene, 30);
         let (a, b) = (right.grains(), left.grains());
-        // No operation of a step knows left from right, so not even roundings differ.
+        // No operation of a step distinguishes left from right, so even rounding errors are equal.
         assert_eq!(largest_distance(&a.positions, &b.positions, mirror), 0.0);
         assert_eq!(largest_distance(&a.velocities, &b.velocities, mirror), 0.0);
         assert!(a.angles.iter().zip(&b.angles).all(|(a, b)| a == &-b));
@@ -152,8 +153,8 @@ fn a_mirrored_scene_moves_mirrored() {
 
 #[test]
 fn renumbered_grains_move_alike_where_the_solution_is_unique() {
-    // Without friction the velocities that solve a step are unique, so the order of the sweep, which
-    // follows the numbering, may change nothing but what the tolerance leaves.
+    // Without friction the velocities that solve a step are unique. The order of the sweep, which follows the
+    // numbering, may change them only within the tolerance.
     for bond in [0.0, 20.0] {
         let mut scene = Scene { physics: SMOOTH, solver: tight(), ..pressed(bond) };
         scene.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
@@ -170,8 +171,8 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
     }
 }
 
-/// Three discs on a floor and two on them, all of which overlap. Friction bounded by sweeps in the order of the numbers gave the last
-/// disc another spin, by 0.08 rad/s, if the two above changed places in the list.
+/// Three discs on a floor and two on top, all overlapping. When friction bounds came from sweeps in the order of the
+/// numbers, swapping the upper two in the list changed the spin of the last disc by 0.08 rad/s.
 #[test]
 fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
     let discs = [
@@ -207,7 +208,7 @@ fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
     assert!(bounded > 0.01, "bounds of friction that sweeps make: {bounded:e} rad/s apart");
 }
 
-/// A chain of 12 that hangs: dozens of sweeps from a cold start, one from the right impulses.
+/// A hanging chain of 12 discs: a cold start needs dozens of sweeps, the right impulses need one.
 fn chain() -> Scene {
     let radius = 0.05;
     let place = |k: usize| -DVec2::Y * (k as f64 * (2.0 * radius - 1e-9));
@@ -221,7 +222,7 @@ fn chain() -> Scene {
     }
 }
 
-/// Sweeps of the next step to a residual of 1e-8.
+/// Sweeps that the next step needs to reach a residual of 1e-8.
 fn sweeps_of_next_step(run: &mut Simulation, warm_start: bool) -> u32 {
     let settings = SolverSettings { warm_start, ..to_residual(1e-8) };
     run.set_solver(settings).expect("proper settings");
@@ -231,7 +232,7 @@ fn sweeps_of_next_step(run: &mut Simulation, warm_start: bool) -> u32 {
 
 #[test]
 fn a_contact_that_goes_leaves_the_others_their_impulses() {
-    // A disc in front of the chain in the order of contacts falls off the fixed disc.
+    // A disc that precedes the chain in the order of contacts falls off the fixed disc.
     let mut scene = chain();
     let place = DVec2::new(0.1 - 1e-9, 0.0);
     let velocity = DVec2::new(3.0, 0.0);

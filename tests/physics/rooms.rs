@@ -1,4 +1,4 @@
-//! What the registries say of their rows is so: a setting that is said to be read changes what happens.
+//! The registries are correct: each setting that a stepper is listed to read changes its steps.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use crate::program::*;
 use slump::config::read_scene;
 use slump::setting::{About, Kind, Value};
 
-/// Enough for grains to meet, and for a step to start from the impulses of another.
+/// Enough steps for grains to meet and for warm starts.
 const STEPS: usize = 6;
 
-/// A pile that meets and bounces, with and without cohesion, and one that is not solved to the end.
+/// Piles that meet and bounce: with cohesion, without, with too few sweeps to be solved, and under bounded friction.
 fn piles() -> [Scene; 4] {
     let pile = |bond| pressed_pile(12, 0.5, 7, parameters(bond, 1e-3, 0.3, 0.5));
     let mut unsolved = pile(0.0);
@@ -20,7 +20,7 @@ fn piles() -> [Scene; 4] {
     [pile(20.0), pile(0.0), unsolved, bounded]
 }
 
-/// Values of a setting, of which some may be refused.
+/// Values of a setting. Some of them may be refused.
 fn values(about: &About) -> Vec<Value> {
     match about.kind {
         Kind::Number => [1e-4, 1e-3, 0.01, 0.1, 0.9, 2.0, 50.0].map(Value::Number).to_vec(),
@@ -30,7 +30,7 @@ fn values(about: &About) -> Vec<Value> {
     }
 }
 
-/// All that happens, to the last bit; nothing where the settings are refused.
+/// Bits of the run's grains and observables; `None` if the settings are refused.
 fn course(pile: &Scene, settings: Settings) -> Option<String> {
     let mut scene = pile.clone();
     scene.set_settings(settings);
@@ -42,7 +42,7 @@ fn course(pile: &Scene, settings: Settings) -> Option<String> {
     Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, run.observables()))
 }
 
-/// True if a setting changes anything, or can only be what it is.
+/// True if changing a setting changes the run, or if no other value is accepted.
 fn matters(about: &About, stepper: Stepper) -> bool {
     let mut taken = 0;
     for pile in piles() {

@@ -1,4 +1,4 @@
-//! Error budgets as a user asks for them.
+//! Error budgets as a user starts them.
 
 use crate::program::*;
 
@@ -8,13 +8,13 @@ fn budget(out: &Path, more: &[&str]) -> Command {
     command
 }
 
-/// What a budget says.
+/// The report of a budget.
 fn answer(out: &Path, more: &[&str]) -> String {
     succeed(&mut budget(out, more));
     read(out.join("report.md"))
 }
 
-/// The cells of the table that no clock has a part in.
+/// The cells of the table that do not depend on the clock.
 fn table(out: &Path) -> Vec<Vec<String>> {
     let text = read(out.join("budget.csv"));
     let mut rows = csv::Reader::from_reader(text.as_bytes());
@@ -27,7 +27,7 @@ fn table(out: &Path) -> Vec<Vec<String>> {
     rows.records().map(row).collect()
 }
 
-/// What a row of a cause says of it in a column.
+/// The values of a cause in a column.
 fn cell(rows: &[Vec<String>], cause: &str, column: usize) -> Vec<f64> {
     let of_cause = rows.iter().filter(|row| row[2] == cause);
     of_cause.filter_map(|row| row[column].parse().ok()).collect()
@@ -95,8 +95,8 @@ fn parts_of_a_budget_join_to_what_one_machine_comes_to_and_cost_it_nothing() {
     assert!(2 * runs(&joined) < all, "{} runs of {all} were its own", runs(&joined));
 }
 
-/// A disc that falls freely from rest: y = −g t (t + Δt)/2 by the semi-implicit steps, so that what it has lost at t is
-/// known, with an error that is linear in Δt.
+/// A disc in free fall from rest: y = −g t (t + Δt)/2 with semi-implicit steps, so the height lost at t is known,
+/// with an error that is linear in Δt.
 const FALL: &str = "
 name = 'fall'
 mean_diameter = 1.0

@@ -1,10 +1,10 @@
-//! Files of others: what is no plain file is not read, what has no end is not read on, and what this program did not
-//! write is not removed.
+//! Other people's files: the program reads only plain files, stops reading files without an end, and removes only
+//! files that it wrote.
 #![cfg(unix)]
 
 use crate::program::*;
 
-/// The sentence that the program refuses with, long before anyone loses patience.
+/// The sentence in which the program refuses, within the time limit.
 fn refusal(words: &[&str]) -> String {
     let program = slump("").get_program().to_owned();
     sentence(Command::new("timeout").arg("30").arg(program).args(words))
@@ -80,7 +80,7 @@ fn an_edited_manifest_has_no_other_file_removed() {
     write(at("manifest.json"), told);
     succeed(&mut brief_run(folder.path(), &["--overwrite"]));
     assert_eq!(read(at("thesis.tex")), "mine");
-    // What has a run's name and is none of its files would be written over.
+    // A file that has the name of a run's file but other contents would be overwritten.
     for name in ["frame_00007.png", "observables.csv", "checkpoint.slump"] {
         let before = std::fs::read(at(name)).ok();
         write(at(name), "mine as well");

@@ -1,20 +1,20 @@
-//! The rules of the house that no compiler sees, kept by reading the sources.
+//! Rules for the sources that the compiler cannot check.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::import_arrows::{arrows, circles};
 
-/// A file is one concept; longer ones are rarely one.
+/// Longest file, lines. Longer files rarely contain one concept.
 const LONGEST_FILE: usize = 500;
 
-/// All Rust files of the package and its crates, by their path, except those that test.
+/// All Rust files of the package and its crates except tests, by path.
 fn sources() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     files_below(&[root.join("src"), root.join("crates")])
 }
 
-/// All Rust files below some folders of the package, by their path.
+/// All Rust files below some folders of the package, by path.
 fn files_below(folders: &[PathBuf]) -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = BTreeMap::new();
@@ -34,7 +34,7 @@ fn files_below(folders: &[PathBuf]) -> BTreeMap<String, String> {
     found
 }
 
-/// The words behind a keyword that begins an item.
+/// The names after a keyword that begins an item.
 fn named<'a>(text: &'a str, keyword: &str) -> impl Iterator<Item = &'a str> {
     let keyword = format!("{keyword} ");
     text.lines().filter_map(move |line| {
@@ -166,7 +166,7 @@ fn documents_name_files_that_are_there() {
     assert!(gone.is_empty(), "{gone:#?}");
 }
 
-/// `f64::max` and `f64::min` leave open which of 0.0 and -0.0 they return: [`slump_core::number::Parts`] does not.
+/// Of 0.0 and -0.0, `f64::max` and `f64::min` may return either; [`slump_core::number::Parts`] always returns the same.
 #[test]
 fn no_sign_of_a_zero_depends_on_the_compiler() {
     let sources = sources();
@@ -183,7 +183,7 @@ fn no_sign_of_a_zero_depends_on_the_compiler() {
     );
 }
 
-/// Tests that need more than Rust are run by `cargo test -- --ignored with_driver with_ffmpeg`, which goes by names.
+/// `cargo test -- --ignored with_driver with_ffmpeg` selects the tests that need more than Rust by their names.
 #[test]
 fn tests_that_need_a_program_have_it_in_their_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

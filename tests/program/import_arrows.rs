@@ -1,8 +1,9 @@
-//! The rule that imports point one way: in every folder of a crate, no circle of arrows among its files and subfolders.
+//! The rule that imports point one way: in each folder of a crate, the arrows among its files and subfolders form no
+//! circle.
 //!
-//! An arrow goes from a file to the file that defines an item it names, in a `use` or in a path that begins with
-//! `crate`, `self` or `super`. Re-exports of a `mod.rs` or `lib.rs` are followed to the file that defines the item and are
-//! no arrows themselves. Test modules do not count.
+//! An arrow points from a file to the file that defines an item that the first file names, in a `use` or in a path
+//! that begins with `crate`, `self` or `super`. Re-exports of a `mod.rs` or `lib.rs` are followed to the defining
+//! file and are no arrows themselves. Test modules do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -12,7 +13,7 @@ use syn::{Item, UseTree, Visibility};
 
 type Module = Vec<String>;
 
-/// The paths that a file names, as far as they lead into its own crate.
+/// The paths in a file that lead into its own crate.
 struct Imports<'a> {
     modules: &'a BTreeMap<Module, String>,
     own_names: &'a [&'a str],
@@ -25,7 +26,7 @@ struct Imports<'a> {
 }
 
 impl Imports<'_> {
-    /// An absolute path in the crate, or none if the path leads out of it.
+    /// An absolute path in the crate; `None` if the path leads out of it.
     fn absolute(&self, path: &[String]) -> Option<Module> {
         let (first, mut rest) = path.split_first()?;
         let mut base = self.module.clone();
@@ -128,7 +129,7 @@ fn module_of(file: &str) -> Module {
     module
 }
 
-/// The file that defines the item of an absolute path: that of the deepest module, or where its re-export leads.
+/// The file that defines the item of an absolute path: the file of the deepest module, or the target of its re-export.
 fn definer(path: &[String], imports: &BTreeMap<Module, Imports<'_>>, depth: u32) -> Option<Module> {
     let length = (0..=path.len()).rev().find(|&length| imports.contains_key(&path[..length]))?;
     let (module, rest) = path.split_at(length);
@@ -187,7 +188,7 @@ pub fn arrows(
     arrows
 }
 
-/// Every circle: the folder, and the arrows among its files and subfolders that lead back.
+/// All circles: the folder, and the arrows among its files and subfolders that lead back.
 pub fn circles(arrows: &BTreeSet<(String, String)>) -> Vec<String> {
     let files = arrows.iter().flat_map(|(from, to)| [from, to]);
     let folders: BTreeSet<&str> = files

@@ -1,4 +1,4 @@
-//! The program from outside: options, refusals, files, runs that are stopped, saved and gone on with, studies.
+//! The program from outside: options, refusals, files, studies, and runs that are stopped, saved and resumed.
 
 #[path = "../common/mod.rs"]
 mod common;

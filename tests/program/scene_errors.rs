@@ -1,4 +1,4 @@
-//! Values that no scene can have are refused in one sentence; good scenes survive being written.
+//! Values that no scene can have are refused in one sentence. Good scenes can be written and read again.
 
 use slump::config::{parse_discs, read_scene, scene_to_toml, write_discs};
 use slump::error::Error;
@@ -11,7 +11,7 @@ fn good() -> Scene {
     under_g(parameters(20.0, 1e-3, 0.1, 0.5), grains)
 }
 
-/// Spoils a good scene and compares the message.
+/// Makes a good scene wrong and compares the message.
 #[track_caller]
 fn check(spoil: impl FnOnce(&mut Scene), expected: &str) {
     let mut scene = good();
@@ -77,7 +77,7 @@ fn bodies_and_lengths_outside_their_range_are_named() {
         check(spoil, &is("fixed_discs[0].radius", "m"));
     }
     check(|s| s.grains.clear(), "grains is 0, but must be at least one disc");
-    // Lengths in other units than metres.
+    // Lengths in units other than metres.
     for (factor, expected) in [
         (1e-3, ", a hundredth of the mean diameter of the grains"),
         (1e3, "100 times the diameter of the largest grain"),
@@ -282,7 +282,7 @@ fn written_discs_read_back_bit_for_bit() {
     }
 }
 
-/// All that a scene file must say.
+/// The required fields of a scene file.
 const LEAST: &str = "name = \"least\"
 mean_diameter = 0.2
 duration_secs = 1.0

@@ -1,4 +1,4 @@
-//! Recordings and problem files: what is in them, what stays of them, and what is read back.
+//! Recordings and problem files: their contents, the parts that survive an interruption, and reading them.
 
 #[path = "../common/columnar.rs"]
 mod columnar;

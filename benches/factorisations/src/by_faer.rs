@@ -1,4 +1,4 @@
-//! The factorisations of the library faer, on one thread, in the order that it finds itself (minimum degree).
+//! Factorisations of the library faer, on one thread, in its own elimination order (minimum degree).
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
@@ -11,12 +11,12 @@ use faer::{Conj, Mat, Par, Side};
 use crate::matrix::Matrix;
 use crate::{Told, least_secs};
 
-/// A column at a time.
+/// Factorises one column at a time.
 pub fn simplicial(matrix: &Matrix) -> Told {
     tell("faer simplicial", matrix, SupernodalThreshold::FORCE_SIMPLICIAL)
 }
 
-/// Columns of like structure at a time.
+/// Factorises columns of similar structure together.
 pub fn supernodal(matrix: &Matrix) -> Told {
     tell("faer supernodal", matrix, SupernodalThreshold::FORCE_SUPERNODAL)
 }

@@ -1,6 +1,6 @@
-//! Factorises the matrices of an interior point, M + Σ Hᵀ K H over the contacts of recorded piles, in four ways:
-//! by Slump's block LU (what `newton` takes) and block Cholesky (what `interior-point` takes), and by faer's
-//! simplicial and supernodal Cholesky. Prints a row a pile and a way: counts first, then times.
+//! Factorises the matrices of an interior-point method, M + Σ Hᵀ K H over the contacts of recorded piles, in four ways:
+//! by Slump's block LU (used by `newton`) and block Cholesky (used by `interior-point`), and by faer's simplicial and
+//! supernodal Cholesky. Prints one row for each pile and factorisation: counts first, then times.
 //!
 //! `slump-factorisations pile/csv/contacts.csv …` reads the last frame of recordings that
 //! `slump --headless --data pile/ --data-format csv` writes.
@@ -16,28 +16,29 @@ use std::time::{Duration, Instant};
 
 use matrix::Matrix;
 
-/// How long a way is repeated; times are the least of all repeats.
+/// Time for which each factorisation is repeated. Reported times are the least of all repeats.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What one way takes for one matrix.
+/// Cost of one factorisation of one matrix.
 pub struct Told {
-    /// Its name.
+    /// Name of the factorisation.
     pub name: &'static str,
-    /// Numbers kept of the factors.
+    /// Number of stored entries of the factors.
     pub numbers: usize,
-    /// Floating-point operations of a factorisation, multiplications and additions each; none where it does not say.
+    /// Floating-point operations of a factorisation, multiplications and additions counted separately; `None` if
+    /// unknown.
     pub flops: Option<f64>,
-    /// Order and structure of the factors, s.
+    /// Time to find the order and the structure of the factors, s.
     pub analysis_secs: f64,
-    /// The factors, the matrix put in place first, s.
+    /// Time to fill in and factorise the matrix, s.
     pub factors_secs: f64,
-    /// Solution with the factors, s.
+    /// Time of a solution with the factors, s.
     pub solution_secs: f64,
     /// ‖Ax − b‖ / ‖b‖.
     pub error: f64,
 }
 
-/// The least time of as many calls as there is patience for, s.
+/// Least time of a call, s, over as many calls as fit into `PATIENCE`.
 pub fn least_secs(mut call: impl FnMut()) -> f64 {
     let (begun, mut least) = (Instant::now(), f64::INFINITY);
     while begun.elapsed() < PATIENCE {

@@ -1,33 +1,33 @@
-//! The matrix of an interior point near its end: unit masses, and contacts of which some are stiff and some soft
-//! by many orders of magnitude.
+//! The matrix of an interior-point method near convergence: unit masses, and contacts whose stiffness varies by many
+//! orders of magnitude.
 
 use std::collections::BTreeMap;
 use std::error::Error;
 
 use crate::linear::Block;
 
-/// Orders of magnitude that the stiffness of contacts goes through, around that of the masses.
+/// Range of the contact stiffness relative to the masses, in orders of magnitude.
 const STIFFNESS: [f64; 2] = [-6.0, 6.0];
 
-/// M + Σ Hᵀ K H by blocks of three: two axes and the spin, in units in which a disc's masses are 1 and ½.
+/// M + Σ Hᵀ K H in blocks of three: two axes and the spin, in units in which a disc has mass 1 and moment of inertia ½.
 pub struct Matrix {
     /// Number of bodies.
     pub bodies: usize,
-    /// Bodies that touch each other, the smaller number first.
+    /// Pairs of bodies in contact, the smaller number first.
     pub pairs: Vec<(u32, u32)>,
-    /// A block a body.
+    /// One block per body.
     pub diagonal: Vec<Block<3>>,
-    /// A block a pair, its rows those of the first.
+    /// One block per pair; its rows belong to the first body.
     pub off_diagonal: Vec<Block<3>>,
     /// A right-hand side.
     pub right_side: Vec<[f64; 3]>,
 }
 
 impl Matrix {
-    /// The matrix of the last frame of a table of contacts.
+    /// Reads the matrix of the last frame of a table of contacts.
     ///
     /// # Errors
-    /// Where the file cannot be read, or is no such table.
+    /// If the file cannot be read, or is not a table of contacts.
     pub fn read(path: &str) -> Result<Self, Box<dyn Error>> {
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path)?;
         let header = reader.headers()?.clone();
@@ -70,7 +70,7 @@ impl Matrix {
         let mut diagonal = vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]]; bodies];
         let mut blocks: BTreeMap<(u32, u32), Block<3>> = BTreeMap::new();
         for &(i, j, [x, y]) in contacts {
-            // The gradients of v_n and v_t, the latter with the rims' spins of both bodies.
+            // The gradients of v_n and v_t; that of v_t includes the rim velocities of both bodies.
             let rows = [([x, y, 0.0], [-x, -y, 0.0]), ([-y, x, 1.0], [y, -x, 1.0])];
             for (on_i, on_j) in rows {
                 let stiffness = 10f64.powf(STIFFNESS[0] + (STIFFNESS[1] - STIFFNESS[0]) * fraction());

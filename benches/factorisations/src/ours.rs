@@ -4,7 +4,7 @@ use crate::linear::{Block, BlockMatrix, Elimination, SymmetricBlockMatrix};
 use crate::matrix::Matrix;
 use crate::{Told, least_secs};
 
-/// The unsymmetric one.
+/// Unsymmetric block LU, the factorisation of `newton`.
 pub fn block_lu(matrix: &Matrix) -> Told {
     let mut factors = BlockMatrix::<3>::default();
     let put = |factors: &mut BlockMatrix<3>, elimination: &Elimination, edges: &[u32]| {
@@ -25,7 +25,7 @@ pub fn block_lu(matrix: &Matrix) -> Told {
         }
         Some(vector) => factors.solve(elimination, vector),
     });
-    // Both triangles, and every product twice.
+    // Unlike the symmetric factorisation, LU stores both triangles and computes every product twice.
     Told {
         name: "block LU",
         numbers: 2 * told.numbers,
@@ -34,7 +34,7 @@ pub fn block_lu(matrix: &Matrix) -> Told {
     }
 }
 
-/// The symmetric one.
+/// Symmetric block Cholesky, the factorisation of `interior-point`.
 pub fn block_cholesky(matrix: &Matrix) -> Told {
     let mut factors = SymmetricBlockMatrix::<3>::default();
     tell(matrix, |elimination, edges, vector| match vector {
@@ -56,7 +56,7 @@ pub fn block_cholesky(matrix: &Matrix) -> Told {
     })
 }
 
-/// Times `act`, which factorises where it gets no vector, and solves for one.
+/// Times `act`, which factorises if it gets no vector, and otherwise solves for the vector.
 fn tell(
     matrix: &Matrix,
     mut act: impl FnMut(&Elimination, &[u32], Option<&mut [[f64; 3]]>),
@@ -81,7 +81,7 @@ fn tell(
     let solution_secs = least_secs(&mut solve);
     let place = |body: usize| elimination.place_of[body] as usize;
     let solution: Vec<_> = (0..matrix.bodies).map(|body| vector[place(body)]).collect();
-    // A product of two blocks, added, is 54 operations; that on a diagonal block counts half.
+    // The product of two blocks and its addition are 54 operations; on a diagonal block they count half.
     let (edges, products) = (elimination.later.len() as f64, elimination.targets.len() as f64);
     Told {
         name: "block Cholesky",

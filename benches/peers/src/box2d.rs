@@ -1,7 +1,7 @@
-//! Box2D v3, through boxdd, which brings the C source along.
+//! Box2D v3, through the crate boxdd, which includes the C source.
 //!
-//! Box2D's slop is 0.005 of its length unit, which is one for the whole program. So it is the world
-//! that is scaled: lengths and g by the same factor, times not.
+//! Box2D's slop is 0.005 of its length unit, which is the same for the whole program. To set the slop, this bench
+//! scales the world: it multiplies lengths and g by one factor and leaves times unchanged.
 
 use boxdd::{
     BodyBuilder, BodyId, BodyType, Foundation, Position, ShapeDef, SurfaceMaterial, Vec2, World,
@@ -11,13 +11,13 @@ use boxdd::{
 use crate::engine::{Engine, SLOP_IN_DIAMETERS, Setting};
 use crate::pile::{AREAL_DENSITY, GRAVITY, Pile};
 
-/// Box2D's slop in its length unit.
+/// Box2D's slop, in Box2D's length unit.
 const SLOP: f64 = 0.005;
 
 pub struct Box2d {
     world: World,
     grains: Vec<BodyId>,
-    /// Box2D's units a metre.
+    /// Box2D length units per metre.
     scale: f64,
     setting: Setting,
 }
@@ -30,7 +30,7 @@ impl Box2d {
             .gravity(Vec2::new(0.0, (-GRAVITY * scale) as f32))
             .contact_hertz(setting.contact_hertz)
             .restitution_threshold(0.0)
-            // As fast as nothing here moves: no bound on how fast overlap is pushed out.
+            // No body here is as fast as this, so it does not limit the speed at which overlap is pushed out.
             .contact_speed((10.0 * scale) as f32)
             .maximum_linear_speed((100.0 * scale) as f32)
             .enable_sleep(false)
@@ -69,7 +69,7 @@ impl Box2d {
 impl Engine for Box2d {
     fn step(&mut self) {
         let Setting { time_step_secs, substeps, .. } = self.setting;
-        // Fails only for a step that is no number, which the command line refuses.
+        // Fails only if the step is not a number, which the command line refuses.
         let events = self.world.step(time_step_secs as f32, substeps as i32);
         drop(events.expect("a proper step"));
     }

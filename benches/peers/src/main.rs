@@ -1,5 +1,5 @@
-//! Runs the pile without cohesion with other engines and with Slump, and writes what came of it as JSON and as a chart.
-//! See `README.md`.
+//! Runs the cohesionless pile with other engines and with Slump, and writes the results as JSON and as a chart. See
+//! `README.md`.
 
 mod box2d;
 mod draw;
@@ -19,7 +19,7 @@ use engine::{Engine, Setting};
 use pile::Pile;
 use slump::{Slump, Way};
 
-/// Grains, width of their box in diameters, and how many piles.
+/// Number of grains, width of their box in diameters, and number of piles.
 const PILES: [(usize, f64, u64); 2] = [(138, 16.0, 8), (2000, 60.0, 1)];
 const COMMAND: &str = "benches/peers/run.sh";
 const DURATION_SECS: f64 = 1.0;
@@ -27,13 +27,13 @@ const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
 const SUBSTEPS: [u32; 3] = [4, 8, 16];
 const CONTACT_HERTZ: [f32; 2] = [960.0, 3840.0];
 const SWEEPS: [u32; 3] = [10, 40, 160];
-/// Runs that the least time is taken of, but for those that take longer than this, s.
+/// Number of runs whose least time is taken. A run that takes longer than `LONG_ENOUGH_SECS` is not repeated.
 const REPEATS: u32 = 3;
 const LONG_ENOUGH_SECS: f64 = 5.0;
-/// Steps between two looks at positions, which are outside of the clock.
+/// Steps between two measurements of positions, whose time is not counted.
 const STEPS_PER_LOOK: u64 = 10;
 
-/// What is compared, and the curve of the chart that it is of.
+/// Compared engine or method, and its curve in the chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 enum Series {
     #[serde(rename = "rapier2d 0.36 f32")]
@@ -50,7 +50,7 @@ enum Series {
     Certified,
 }
 
-/// All that was measured.
+/// All results.
 #[derive(Serialize)]
 struct Report {
     command: &'static str,
@@ -59,7 +59,7 @@ struct Report {
     rows: Vec<Row>,
 }
 
-/// An engine with a setting, at a Δt: means over the piles.
+/// Results of an engine with a setting at a time step: means over the piles.
 #[derive(Serialize)]
 struct Row {
     series: Series,
@@ -69,11 +69,11 @@ struct Row {
     time_step_secs: f64,
     /// Δy_G at the end.
     slump: f64,
-    /// Half of its 95 % interval; none of one pile.
+    /// Half of its 95 % interval; `None` for a single pile.
     slump_within: Option<f64>,
-    /// Mean over the looks of the mean overlap of touching grains, in diameters.
+    /// Mean overlap of touching grains, averaged over the measurements, in diameters.
     mean_overlap: f64,
-    /// Largest overlap at any look at any pile, in diameters.
+    /// Largest overlap in any measurement of any pile, in diameters.
     max_overlap: f64,
     secs_per_simulated_sec: f64,
     ms_per_step: f64,
@@ -86,7 +86,7 @@ struct Compared {
     make: Box<Make>,
 }
 
-/// Puts a pile into an engine, for steps of so many seconds.
+/// Puts a pile into an engine, for steps of the given length, s.
 type Make = dyn Fn(&Pile, f64) -> Result<Box<dyn Engine>, Box<dyn Error>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -160,7 +160,7 @@ fn compared() -> Vec<Compared> {
     all
 }
 
-/// The name that tables have for it.
+/// The name of a series in tables.
 fn name_of(series: Series) -> String {
     serde_json::to_value(series)
         .ok()
@@ -184,7 +184,7 @@ fn measured(
                 let started = Instant::now();
                 engine.step();
                 run_secs += started.elapsed().as_secs_f64();
-                // All repeats are the same.
+                // All repeats give the same positions, so the first is measured.
                 if repeat == 0 && (step % STEPS_PER_LOOK == 0 || step == steps) {
                     let (mean, largest) = pile.overlaps(&engine.positions());
                     overlaps.push(mean);
@@ -217,7 +217,7 @@ fn measured(
     })
 }
 
-/// The name that Linux gives the processor.
+/// The processor's name according to Linux.
 fn processor() -> String {
     let text = std::fs::read_to_string(Path::new("/proc/cpuinfo")).unwrap_or_default();
     let line = text.lines().find(|line| line.starts_with("model name"));

@@ -1,4 +1,4 @@
-//! The pile without cohesion: the same grains, base and numbers as in Slump.
+//! The cohesionless pile: the same grains, base and parameters as in Slump.
 
 use slump_core::error::Result;
 use slump_core::scene::{NewPile, Scene, pile_of, settle};
@@ -16,10 +16,10 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// Grains, and what stands still.
+/// The grains and the rough base.
 #[derive(Clone, Debug)]
 pub struct Pile {
-    /// The pile as Slump runs it.
+    /// The pile as a Slump scene.
     pub scene: Scene,
     pub grains: Vec<Disc>,
     /// The rough base.
@@ -27,7 +27,7 @@ pub struct Pile {
 }
 
 impl Pile {
-    /// Rains grains into a box, and takes its walls away.
+    /// Rains grains into a box and removes its walls.
     pub fn rained(grains: usize, box_width_in_diameters: f64, seed: u64) -> Result<Self> {
         let made_as = NewPile { grains, box_width_in_diameters, seed, ..NewPile::default() };
         let mut scene = pile_of(settle(&made_as, |_| true)?, box_width_in_diameters)?;
@@ -38,7 +38,7 @@ impl Pile {
         Ok(Self { scene, grains, base })
     }
 
-    /// d, m.
+    /// Mean diameter d, m.
     pub fn diameter(&self) -> f64 {
         self.scene.mean_diameter
     }

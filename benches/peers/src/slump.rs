@@ -1,4 +1,4 @@
-//! Slump's own ways to step.
+//! Slump's own steppers and solvers.
 
 use slump_core::error::Result;
 use slump_core::sim::{Remedies, Simulation, Stepper};
@@ -7,12 +7,12 @@ use slump_core::solver::{FrictionModel, Method, SolverSettings};
 use crate::engine::Engine;
 use crate::pile::Pile;
 
-/// A way to step, in words, and what it sets.
+/// A stepper or solver with its settings.
 #[derive(Clone, Copy, Debug)]
 pub enum Way {
-    /// The paper's scheme with so many sweeps a step.
+    /// The paper's scheme with `count` sweeps per step.
     Sweeps { count: u32, push_out: bool },
-    /// Every step solved within bounds of friction.
+    /// Every step solved to tolerance with bounded friction (Tresca).
     Certified { push_out: bool },
     /// Soft contacts with substeps.
     TgsSoft { substeps: u32 },
@@ -26,7 +26,7 @@ impl Slump {
         scene.parameters.time_step_secs = time_step_secs;
         match way {
             Way::Sweeps { count, push_out } => {
-                // No residual is as small as this, so that all sweeps are taken.
+                // No residual is as small as this, so all sweeps are taken.
                 scene.solver = SolverSettings::to_residual(Method::Nsgs, f64::MIN_POSITIVE, count);
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
             }
@@ -45,7 +45,7 @@ impl Slump {
 
 impl Engine for Slump {
     fn step(&mut self) {
-        // A dry pile under these settings stays finite, and one that did not would be seen in the table.
+        // A cohesionless pile with these settings stays finite. A failure would show in the table.
         self.0.step().expect("a finite state");
     }
 

@@ -1,4 +1,4 @@
-//! What can go wrong, each as one sentence that names the field, the value and what is allowed.
+//! Errors of this crate. Each message is one sentence that names the field, the value and the allowed values.
 
 use std::path::{Path, PathBuf};
 
@@ -20,16 +20,16 @@ pub enum Error {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// What the system or the parser said, with the line where there is one.
+        /// Message of the system or the parser, with the line if it is known.
         reason: String,
     },
-    /// Options that the command line does not take, and why.
+    /// Options that the command line refuses, with the reason.
     #[error("{0}")]
     Options(String),
-    /// No renderer of the kind that was asked for.
+    /// The requested kind of renderer is not available.
     #[error("{0}")]
     Renderer(String),
-    /// A run that a signal ended. What it came to until then has been written.
+    /// A run ended by a signal. Its results up to then have been written.
     #[error("stopped by {signal} at step {step} (t = {time_secs} s)")]
     Interrupted {
         /// Name of the signal.
@@ -41,14 +41,14 @@ pub enum Error {
         /// The simulated time of that step.
         time_secs: f64,
     },
-    /// A solve that a signal ended. The impulses that it had by then have been written.
+    /// A solve ended by a signal. The impulses reached by then have been written.
     #[error("stopped by {signal} after {sweeps} sweeps")]
     SolveInterrupted {
         /// Name of the signal.
         signal: &'static str,
         /// The program's exit code.
         exit_code: u8,
-        /// Sweeps until then.
+        /// Sweeps done before the signal.
         sweeps: u32,
     },
     /// A simulation whose state is no longer finite.
@@ -60,7 +60,7 @@ pub enum Error {
         ))
     )]
     NonFinite {
-        /// The step after which it was seen.
+        /// The step after which the state was found to be not finite.
         step: u64,
         /// The simulated time of that step.
         time_secs: f64,
@@ -92,19 +92,19 @@ impl Error {
 
     /// An error about a file or folder.
     pub fn file(path: impl AsRef<Path>, reason: impl std::fmt::Display) -> Self {
-        // Parsers end their messages with a line break, and break them; a sentence has none.
+        // Messages of parsers contain and end with line breaks; a sentence has none.
         let reason = reason.to_string().trim_end().replace('\n', " ");
         Self::File { path: path.as_ref().to_owned(), reason }
     }
 
-    /// An error about a file that cannot be read, or is no `form`: what the system or a parser says,
-    /// and what is allowed.
+    /// An error about a file that cannot be read or is not a `form`: the message of the system or parser, followed by
+    /// the allowed form.
     pub fn unread(path: impl AsRef<Path>, said: impl std::fmt::Display, form: &str) -> Self {
         Self::file(path, with_allowed(&said.to_string(), form))
     }
 }
 
-/// Says that the value of a field must be otherwise, unless it is sound.
+/// Returns an error about the value of a field unless `is_sound`.
 ///
 /// # Errors
 /// [`Error::Value`].
@@ -117,7 +117,7 @@ pub fn check(
     if is_sound { Ok(()) } else { Err(Error::value(field, value, allowed)) }
 }
 
-/// What a parser says of `form`, as a sentence that says what is allowed.
+/// A parser's message about `form`, extended by the allowed form if it does not name it.
 pub fn with_allowed(said: &str, form: &str) -> String {
     let said = said.trim_end();
     if said.contains("must ") {
@@ -134,7 +134,7 @@ pub fn with_allowed(said: &str, form: &str) -> String {
     format!("{said}, but must be {form}")
 }
 
-/// What a parser expects, where it names a type of the program.
+/// Replaces names of Rust types in a parser's message by words for users.
 pub fn in_words(expected: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("f64", "a number"),
@@ -151,15 +151,15 @@ pub fn in_words(expected: &str) -> String {
     known.map_or(expected.to_owned(), |(words, rest)| format!("{words}{rest}"))
 }
 
-/// Longest number that is shown digit by digit; every f64 fits as one with an exponent.
+/// Longest number shown digit by digit. Every f64 fits with an exponent.
 const MOST_DIGITS: usize = 24;
-/// Longest word of a message; what is longer is nobody's sentence.
+/// Longest word of a message; longer words are cut.
 const MOST_OF_WORD: usize = 120;
-/// Longest part of a message: the list of all settings fits.
+/// Longest part of a message. The list of all settings fits.
 const MOST_OF_PART: usize = 3000;
 
-/// A part of a message as one can read it, whatever a file or a command line put into it: what
-/// moves the cursor is escaped, long numbers get an exponent, and what never ends is cut.
+/// Makes part of a message readable, whatever a file or a command line put into it: escapes control characters,
+/// writes long numbers with an exponent, and cuts overlong text.
 pub fn legible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len().min(MOST_OF_PART));
     for word in text.split_inclusive(' ') {
@@ -178,7 +178,7 @@ pub fn legible(text: &str) -> String {
     shown
 }
 
-/// A word with an exponent instead of more than [`MOST_DIGITS`] digits in a row.
+/// Gives a word an exponent if it has more than [`MOST_DIGITS`] digits in a row.
 fn short_numbers(word: &str) -> String {
     let is_digit = |char: char| char.is_ascii_digit() || char == '.';
     let mut shown = String::new();
@@ -198,12 +198,12 @@ fn short_numbers(word: &str) -> String {
     shown + rest
 }
 
-/// A path as one can read it on any terminal.
+/// A path, escaped so that any terminal can show it.
 pub fn place(path: &Path) -> String {
     escaped(&path.to_string_lossy())
 }
 
-/// What moves the cursor or turns the direction of writing, escaped.
+/// Escapes characters that move the cursor or change the writing direction.
 pub fn escaped(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for char in text.chars() {

@@ -12,11 +12,10 @@
 //! # Ok::<(), slump_core::error::Error>(())
 //! ```
 //!
-//! Programs start from a [`scene`] and step its [`sim::Simulation`]. A way to step, a contact law or a method
-//! of one's own is a [`sim::Advance`]; one problem by itself is shown by
-//! [`next_problem`](sim::Simulation::next_problem) to a [`sim::ProblemVisitor`], and solved by
-//! [`solver::solve`]. Modules depend downward only: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ←
-//! [`scene`].
+//! Programs start from a [`scene`] and step its [`sim::Simulation`]. To add a stepper, a contact law or a solver,
+//! implement [`sim::Advance`]. To see a single contact problem, pass a [`sim::ProblemVisitor`] to
+//! [`next_problem`](sim::Simulation::next_problem); [`solver::solve`] solves it. Modules depend downward only:
+//! [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`].
 
 #![warn(missing_docs, unreachable_pub)]
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]

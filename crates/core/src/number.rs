@@ -1,10 +1,10 @@
-//! Numbers that every compiler and every file treats alike. `#[serde(with = "number")]` writes numbers that are not
-//! finite as words, because JSON has none for them and would read `null` back as nothing.
+//! Numbers that are the same with every compiler and in every file. `#[serde(with = "number")]` writes infinities and
+//! NaN as strings, because JSON has no such numbers and `null` would not read back as a number.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serializer};
 
-/// A number, or as a string `inf`, `-inf` or `NaN`.
+/// Writes a finite number as a number, and any other as the string `inf`, `-inf` or `NaN`.
 pub fn serialize<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     if number.is_finite() {
         serializer.serialize_f64(*number)
@@ -13,7 +13,7 @@ pub fn serialize<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S:
     }
 }
 
-/// What [`serialize`] wrote.
+/// Reads a number written by [`serialize`].
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged)]
@@ -27,13 +27,13 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D:
     }
 }
 
-/// True where a number is 0, which files leave out.
+/// True if a number is 0. Files leave such numbers out.
 pub(crate) fn is_zero<N: Default + PartialEq>(number: &N) -> bool {
     *number == N::default()
 }
 
-/// The parts of a number above and below 0, with the same bits from every compiler. `f64::max` and `f64::min` leave open
-/// which of 0.0 and -0.0 they return, and compilers differ.
+/// Positive and negative parts of a number, with the same bits from every compiler. `f64::max` and `f64::min` do not
+/// specify whether they return 0.0 or -0.0, and compilers differ.
 pub trait Parts {
     /// The larger of the number and 0; 0.0 for NaN and for both zeros.
     fn positive_part(self) -> Self;
@@ -53,11 +53,11 @@ impl Parts for f64 {
     }
 }
 
-/// A number > 0 to two digits, not above itself.
+/// Rounds a number > 0 down to two significant digits.
 pub(crate) fn rounded_down(number: f64) -> f64 {
     let unit = libm::pow(10.0, libm::log10(number).floor() - 1.0);
     let below = (number / unit).floor() * unit;
-    // As it is written, without the rounding of the product.
+    // Parse the decimal form, which is free of the rounding error of the product.
     format!("{below:.1e}").parse().unwrap_or(below)
 }
 

@@ -1,9 +1,9 @@
-//! Settings, each declared once: its name, its default, what it may be, and how it is explained.
+//! Settings, each declared once: name, default, allowed values and explanation.
 //!
-//! `settings!` makes of a list of declarations the plain structure that the physics reads, the structure
-//! of changes that command line, scene and study files fill in ([`Group::Changes`]), the check of the ranges,
-//! and a table ([`About`]) from which options, controls and messages are made. `words!` does so for a
-//! setting that is one of a few words.
+//! From a list of declarations `settings!` generates the plain structure that the physics reads, the structure of
+//! changes that the command line, scene files and study files fill in ([`Group::Changes`]), the range checks, and a
+//! table ([`About`]) from which options, controls and messages are made. `words!` does the same for a setting with a
+//! few allowed words.
 
 use std::fmt;
 
@@ -12,26 +12,26 @@ use serde::ser::SerializeMap;
 
 use crate::error;
 
-/// A setting as its declaration explains it.
+/// The declaration of a setting, independent of its type.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// As command line, studies and messages write it.
+    /// Name on the command line, in studies and in messages.
     pub name: &'static str,
-    /// Stands for the value in the help of the command line.
+    /// Placeholder of the value in the command line's help.
     pub value_name: &'static str,
-    /// One line.
+    /// Help text of one line.
     pub help: &'static str,
-    /// Under which heading the command line lists it.
+    /// Heading under which the command line lists the setting.
     pub heading: &'static str,
-    /// What its values are.
+    /// Kind of its values.
     pub kind: Kind,
-    /// What a scene must have for it to mean anything.
+    /// The scene feature without which the setting has no effect.
     pub needs: Needs,
-    /// How the window shows it, if it does.
+    /// Control in the window, if the window shows the setting.
     pub control: Option<Control>,
 }
 
-/// What a scene must have for a setting to mean anything.
+/// The scene feature without which a setting has no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
     /// Nothing.
@@ -47,24 +47,24 @@ pub enum Needs {
 /// How the window shows a setting.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
-    /// What it is called.
+    /// Label in the window.
     pub label: &'static str,
-    /// Its short name, by which scripts that drive the window find it.
+    /// Short name used by scripts that drive the window.
     pub symbol: &'static str,
-    /// Its unit, or nothing.
+    /// Unit, or an empty string.
     pub unit: &'static str,
-    /// One sentence.
+    /// Hint of one sentence.
     pub hint: &'static str,
     /// Ends of a number's slider. Typed values may lie outside.
     pub range: [f64; 2],
-    /// The largest number that can be typed: beyond it lies no physics, but a slip of the finger.
+    /// The largest number that can be typed; larger ones are typing errors.
     pub most: f64,
-    /// True where equal distances on the slider are equal factors.
+    /// True if the slider is logarithmic.
     pub logarithmic: bool,
 }
 
 impl Control {
-    /// A control without a slider, or one from 0 to 1.
+    /// A control without a label, with range 0 to 1.
     pub(crate) const PLAIN: Self = Self {
         label: "",
         symbol: "",
@@ -76,27 +76,27 @@ impl Control {
     };
 }
 
-/// A control of which no more is said.
+/// A control with a label and a hint and defaults for the rest.
 pub(crate) const fn shown(label: &'static str, hint: &'static str) -> Option<Control> {
     Some(Control { label, hint, ..Control::PLAIN })
 }
 
-/// The declaration of a setting of one type: what [`About`] has, and which values it may have.
+/// The declaration of a setting of type `T`: the fields of [`About`] and the range check.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Declaration<T> {
     pub name: &'static str,
     pub value_name: &'static str,
     pub help: &'static str,
-    /// What it may be, for messages.
+    /// Allowed values, for messages.
     pub allowed: &'static str,
-    /// True where a value is allowed. NaN must not be.
+    /// True if a value is allowed. Must be false for NaN.
     pub holds: fn(T) -> bool,
     pub needs: Needs,
     pub control: Option<Control>,
 }
 
 impl<T: Settable> Declaration<T> {
-    /// A setting that may be any value and that the window does not show.
+    /// Any value is allowed, and the window does not show the setting.
     pub(crate) const ANY: Self = Self {
         name: "",
         value_name: T::VALUE_NAME,
@@ -107,7 +107,7 @@ impl<T: Settable> Declaration<T> {
         control: None,
     };
 
-    /// The row of a table.
+    /// The row of the table of settings.
     pub(crate) const fn about(&self, heading: &'static str) -> About {
         About {
             name: self.name,
@@ -134,7 +134,7 @@ pub enum Value {
     Word(&'static str),
 }
 
-/// As command line and files write it.
+/// Formats the value as the command line and files do.
 impl fmt::Display for Value {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -162,9 +162,9 @@ pub enum Kind {
 /// A word that a setting can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// As command line and files write it.
+    /// Name on the command line and in files.
     pub name: &'static str,
-    /// One line.
+    /// Explanation of one line.
     pub hint: &'static str,
 }
 
@@ -172,11 +172,11 @@ pub struct Word {
 pub trait Settable: Copy + PartialEq {
     /// The kind of its values.
     const KIND: Kind;
-    /// Stands for the value in the help of the command line, where no declaration says otherwise.
+    /// Default placeholder of the value in the command line's help.
     const VALUE_NAME: &'static str = "";
-    /// It as a value.
+    /// Converts the setting to a value.
     fn value(self) -> Value;
-    /// It from a value of its kind; nothing from any other.
+    /// Converts a value of the right kind to the setting; `None` for another kind.
     fn of(value: Value) -> Option<Self>;
 }
 
@@ -203,45 +203,46 @@ settable!(bool, Switch, "BOOL");
 
 /// A structure of settings.
 pub trait Group: Sized + 'static {
-    /// The same settings, each given or not.
+    /// The same settings, each optional.
     type Changes: Changes<Group = Self>;
     /// The settings, in the order of the declaration.
     const ABOUT: &'static [About];
     /// The value of a setting.
     fn get(&self, name: &str) -> Option<Value>;
-    /// Gives a setting a value of its kind. Whether there is one of that name and kind.
+    /// Sets a setting to a value of its kind. Returns false if no setting has that name and kind.
     fn set(&mut self, name: &str, value: Value) -> bool;
     /// Checks each setting against its range.
     ///
     /// # Errors
-    /// Names the first outside its range, its value and the range.
+    /// Names the first setting outside its range, its value and the range.
     fn validate_each(&self) -> error::Result<()>;
 }
 
-/// Settings that are given or not. By name, as files and the command line know them.
+/// Optional settings, accessed by the names that files and the command line use.
 pub trait Changes: Default {
-    /// What is changed.
+    /// The settings to change.
     type Group: Group<Changes = Self>;
-    /// All settings of a group, as they are.
+    /// Changes that set all settings to the values of `group`.
     fn all_of(group: &Self::Group) -> Self;
-    /// Makes the changes.
+    /// Applies the changes.
     fn apply(&self, group: &mut Self::Group);
-    /// Gives a setting a value of its kind. Whether there is one of that name and kind.
+    /// Sets a setting to a value of its kind. Returns false if no setting has that name and kind.
     fn set(&mut self, name: &str, value: Value) -> bool;
-    /// Reads the value of the setting of that name from a file. Whether there is one.
+    /// Reads the value of the setting `name` from a file. Returns false if no setting has that name.
     ///
     /// # Errors
-    /// Where the value is of another kind.
+    /// If the value is of another kind.
     fn read<'de, A: MapAccess<'de>>(&mut self, name: &str, map: &mut A) -> Result<bool, A::Error>;
-    /// Writes what is given.
+    /// Writes the settings that are given.
     ///
     /// # Errors
-    /// Where the writer fails.
+    /// If the writer fails.
     fn write<S: SerializeMap>(&self, map: &mut S) -> Result<(), S::Error>;
 }
 
-/// Declares a structure of settings and the one of their changes. Each field is followed by its default, by name, stand-in
-/// and help of its option (which is its documentation, too), and by what else [`crate::setting::Declaration`] says of it.
+/// Declares a structure of settings and the structure of their changes. Each field has a default, then the name,
+/// placeholder and help of its option (the help is also its documentation), then further fields of
+/// [`crate::setting::Declaration`].
 macro_rules! settings {
     (
         $(#[$meta:meta])* $vis:vis struct $Name:ident, changes $Changes:ident, heading $heading:literal {
@@ -376,8 +377,8 @@ macro_rules! settings {
 
 pub(crate) use settings;
 
-/// Declares a setting that is one of a few words, each with its name and a line that explains it, which is its
-/// documentation, too.
+/// Declares a setting with a few allowed words. Each word has a name and a line of explanation, which is also its
+/// documentation.
 macro_rules! words {
     (
         $(#[$meta:meta])* $vis:vis enum $Name:ident {
@@ -391,18 +392,18 @@ macro_rules! words {
         }
 
         impl $Name {
-            /// All of them.
+            /// All values.
             pub const ALL: &'static [Self] = &[$(Self::$Variant),*];
 
             const WORDS: &'static [$crate::setting::Word] =
                 &[$($crate::setting::Word { name: $word, hint: $hint }),*];
 
-            /// As command line and files write it.
+            /// Name on the command line and in files.
             pub const fn name(self) -> &'static str {
                 Self::WORDS[self as usize].name
             }
 
-            /// One line.
+            /// Explanation of one line.
             pub const fn hint(self) -> &'static str {
                 Self::WORDS[self as usize].hint
             }

@@ -1,5 +1,5 @@
-//! Work shared out over threads so that no bit hangs on their number: items are made one by one into their places, and sums
-//! are added up in stretches of one length, whose sums are added in order.
+//! Parallel loops and sums whose results do not depend on the number of threads, to the last bit. Each item is
+//! computed independently; sums are taken over stretches of fixed length and added in order.
 
 use std::cell::Cell;
 use std::hint::spin_loop;
@@ -10,45 +10,45 @@ use crate::error::{Error, Result, check};
 use rayon::Yield;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-/// Items of which one sum is made at a time.
+/// Items per partial sum.
 const STRETCH: usize = 4096;
-/// Items, of any kind, from which on threads are worth it. On two, a step of 40 sweeps took 0.7 of the time of one thread in a
-/// pile of 10,000 grains, but 1.2 times as long where 10,000 discs touched less, and with 5,000 grains; it took 0.7 to 0.8 with
-/// 50,000 discs.
+/// Smallest number of items, of any kind, for which threads pay. With two threads, a step of 40 sweeps took 0.7 of
+/// the time of one thread in a pile of 10,000 grains, but 1.2 times its time with 10,000 discs that touched less and
+/// with 5,000 grains. It took 0.7 to 0.8 with 50,000 discs.
 const WORTH_IT: usize = 16_384;
-/// How long a thread that was roused waits for work before it sleeps. Longer than what one thread does by itself between
-/// two sweeps; where a thread was let sleep between them, waking it cost as much as it then did.
+/// How long a roused thread waits for work before it sleeps. Longer than the serial work between two sweeps: when
+/// threads slept between sweeps, waking one cost as much as the work it then did.
 const PATIENCE: Duration = Duration::from_micros(200);
 
 thread_local! {
-    /// True where what this thread does is shared out.
+    /// True if this thread's work is shared among threads.
     static SHARES: Cell<bool> = const { Cell::new(false) };
-    /// True where this thread is kept awake.
+    /// True if this thread is being kept awake.
     static IS_AWAKE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// More threads than the largest machines have cores.
+/// More than the number of cores of the largest machines.
 const MOST_THREADS: usize = 1024;
 const ASKED: &str = "RAYON_NUM_THREADS";
 
-/// Refuses a number of threads that no machine has.
+/// Refuses an impossible number of threads.
 ///
 /// # Errors
-/// Names the variable that asks for it.
+/// Names the environment variable that asks for it.
 pub fn check_threads() -> Result<()> {
     let asked = std::env::var(ASKED).unwrap_or_default();
     let is_sound = !asked.parse::<usize>().is_ok_and(|asked| asked > MOST_THREADS);
     check(is_sound, ASKED, asked, format!("a number of threads up to {MOST_THREADS}"))
 }
 
-/// Makes the threads that work is shared out over, where there are none yet.
+/// Creates the thread pool unless it exists.
 ///
 /// # Errors
-/// Where the system makes none.
+/// If the system cannot create the threads.
 pub fn make_threads() -> Result<()> {
     check_threads()?;
     match rayon::ThreadPoolBuilder::new().build_global() {
-        // Without a source it only says that they are there.
+        // An error without a source only means that the pool exists.
         Err(error) if std::error::Error::source(&error).is_some() => {
             let allowed = "as few as the system makes; RAYON_NUM_THREADS=1 asks for one";
             Err(Error::value("the number of threads", format!("too high ({error})"), allowed))
@@ -57,11 +57,11 @@ pub fn make_threads() -> Result<()> {
     }
 }
 
-/// Does work on so many items on the threads of the pool, if they are worth it, and if nothing else is done there. Whoever
-/// is on a thread of a pool already is one of several that share it, and is left alone: waiting for a part of its
-/// work a thread takes up whatever it finds, and might come back from a whole run of another.
+/// Runs `work` on `count` items in the thread pool if that pays. A caller that is already on a thread of a pool
+/// shares the pool with other runs, so its work stays on its own thread: while it waited for part of its work, it
+/// could pick up a whole other run.
 pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
-    // A small step asks for no pool: asking makes it.
+    // Check the count first: asking for the number of threads creates the pool.
     let is_alone = || rayon::current_thread_index().is_some() || rayon::current_num_threads() == 1;
     if count < WORTH_IT || is_alone() {
         return work();
@@ -74,7 +74,7 @@ pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -
     })
 }
 
-/// Does work, on a thread of a pool, whose parts are shared out.
+/// Runs `work`, on a thread of a pool, with its loops and sums shared among threads.
 pub(crate) fn share<R>(work: impl FnOnce() -> R) -> R {
     struct Before(bool);
     impl Drop for Before {
@@ -86,22 +86,21 @@ pub(crate) fn share<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// True where parts of what is done now go to other threads.
+/// True if loops and sums are shared among threads.
 pub(crate) fn are_there() -> bool {
     SHARES.get()
 }
 
-/// Has the other threads wait for work for a while, where parts of it go to them: between two of its calls they would
-/// fall asleep.
+/// Keeps the other threads awake for a while if work is shared with them. Otherwise they fall asleep between two
+/// calls.
 pub(crate) fn rouse() {
     if are_there() {
         (1..rayon::current_num_threads()).for_each(|_| rayon::spawn(stay_awake));
     }
 }
 
-/// Does what there is to do, until there was nothing for a while. A thread that comes here while it waits for another
-/// leaves again in time, whatever that waits for. Where there is one thread, as in a browser, whose programs have no such
-/// clock, it is never called.
+/// Works until there was nothing to do for [`PATIENCE`]. A thread that gets here while it waits for another one
+/// therefore returns in time. Never called with a single thread, as in a browser, whose programs lack this clock.
 fn stay_awake() {
     if IS_AWAKE.replace(true) {
         return;
@@ -121,11 +120,11 @@ fn are_worth_it(count: usize) -> bool {
     count >= WORTH_IT && are_there()
 }
 
-/// Fills a list with so many items, each by its number. What it held before goes; its memory stays.
+/// Fills a list with `count` items, each computed from its index. Clears the list but keeps its memory.
 pub(crate) fn fill<T: Send>(list: &mut Vec<T>, count: usize, item: impl Fn(usize) -> T + Sync) {
     list.clear();
     if list.capacity() < count {
-        // With room for what the next steps may find, so that none allocates once a pile is at rest.
+        // Leave room for later steps, so that none allocates once a pile is at rest.
         list.reserve(count.next_power_of_two());
     }
     if are_worth_it(count) {
@@ -135,7 +134,7 @@ pub(crate) fn fill<T: Send>(list: &mut Vec<T>, count: usize, item: impl Fn(usize
     }
 }
 
-/// Adds up so many items: `sum` is that of a stretch of them, and `add` gets one after the other.
+/// Sums over `count` items: `sum` computes the sum of a stretch, and `add` receives these sums in order.
 pub(crate) fn add_up<S: Send>(
     count: usize,
     sum: impl Fn(Range<usize>) -> S + Sync,
@@ -179,13 +178,13 @@ mod tests {
             });
         });
         assert!(list.iter().enumerate().all(|(k, &item)| item == k + 199));
-        // None is left that would keep a pool from its end.
+        // No waiting thread may keep the pool from ending.
         drop(pool);
     }
 
     #[test]
     fn sums_and_lists_are_the_same_on_any_number_of_threads() {
-        // Sums of such numbers differ in the order in which they are added.
+        // The sum of these numbers depends on the order of addition.
         let number = |k: usize| (k as f64 * 0.7).sin() * 10f64.powi((k % 13) as i32);
         let count = 5 * STRETCH + 17;
         let result = |threads: usize| {

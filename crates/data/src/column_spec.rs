@@ -1,19 +1,19 @@
-//! How the columns of a table are made of rows of a kind: declared once, for whatever shows or writes them.
+//! Declarations of table columns, one list for each kind of row. Everything that shows or writes a column uses them.
 
-/// A column as it is declared.
+/// The declaration of a column.
 #[derive(Clone, Copy, Debug)]
 pub struct ColumnSpec<Row: 'static> {
-    /// Its name in tables.
+    /// Name of the column in tables.
     pub name: &'static str,
-    /// Its unit, `1` for what has none, empty for what is no quantity.
+    /// Unit; `1` for a dimensionless quantity, empty if the column is not a quantity.
     pub unit: &'static str,
-    /// What it is, in a few words or sentences.
+    /// Description, in a few words or sentences.
     pub about: &'static str,
-    /// What a row has in it.
+    /// Function that gives the value of a row.
     pub value: CellValue<Row>,
 }
 
-/// How the value of a column is had from a row.
+/// Kind of a column's value, with the function that takes it from a row.
 #[derive(Clone, Copy, Debug)]
 pub enum CellValue<Row: 'static> {
     /// A number.
@@ -22,16 +22,16 @@ pub enum CellValue<Row: 'static> {
     SomeNumber(fn(&Row) -> Option<f64>),
     /// A whole number.
     Count(fn(&Row) -> u64),
-    /// True if something is so; neither where a law knows no such thing.
+    /// True or false; `None` if the contact law does not define it.
     Flag(fn(&Row) -> Option<bool>),
-    /// A word of a list that is known, by its place there.
+    /// A word from a fixed list, by its index.
     Word(&'static [&'static str], fn(&Row) -> u32),
-    /// A word of the list that goes with the rows, by its place there.
+    /// A word from the table's own list of names, by its index.
     Name(fn(&Row) -> u32),
 }
 
 impl<Row> CellValue<Row> {
-    /// The value as a number, in a row that has one; 1 and 0 stand for what is so and what is not.
+    /// The value as a number, if the row has one; true is 1 and false is 0.
     pub fn number(&self, row: &Row) -> Option<f64> {
         match self {
             Self::Number(of) => Some(of(row)),
@@ -43,7 +43,7 @@ impl<Row> CellValue<Row> {
     }
 }
 
-/// Name of the column that every table has, and by which rows rise.
+/// Name of the column `step`, which every table has and by which its rows are sorted.
 pub(crate) const STEP: &str = "step";
 
 pub(crate) const fn column<Row>(

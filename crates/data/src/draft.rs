@@ -1,4 +1,4 @@
-//! A file that has no name yet: on disk, or in memory if there is no disk.
+//! A file without a name: on disk, or in memory if there is no disk.
 
 use std::path::Path;
 
@@ -9,16 +9,16 @@ pub type DraftFile = std::fs::File;
 #[cfg(target_arch = "wasm32")]
 pub type DraftFile = crate::memory::MemoryFile;
 
-/// Makes a file without a name in a folder. The file disappears with the process, however the process ends.
+/// Creates a file without a name in a folder. The file disappears with the process, however the process ends.
 ///
 /// # Errors
-/// If the system cannot make a file.
+/// If the system cannot create a file.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn nameless_file(folder: &Path) -> std::io::Result<DraftFile> {
     tempfile::tempfile_in(folder)
 }
 
-/// Makes a file without a name in memory.
+/// Creates a file without a name in memory.
 ///
 /// # Errors
 /// None.

@@ -1,4 +1,4 @@
-//! Files that anyone may have made: plain files alone, and no more of them than can be meant.
+//! Reads files of unknown origin: only plain files, and only up to a maximum size.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -6,17 +6,17 @@ use std::path::Path;
 use crate::draft::DraftFile;
 use crate::error::{Error, Result};
 
-/// Bytes of the largest page of a table, and of the largest problem.
+/// Largest page of a table and largest problem file, bytes.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
-/// Bytes of the largest TOML, which takes some 60 times as many: 10,000 grains take one MiB.
+/// Largest TOML file, bytes. Parsing takes about 60 times as much memory; 10,000 grains take one MiB.
 pub const MOST_OF_TOML: u64 = 32 << 20;
-/// Bytes of the longest line of a table.
+/// Longest line of a table, bytes.
 const MOST_OF_LINE: usize = 1 << 20;
 
-/// Opens a file that must be `form`. A device may have no end, and a pipe no beginning.
+/// Opens a file that must be `form`. Devices and pipes are refused: they may have no end, or cannot be read twice.
 ///
 /// # Errors
-/// Names the file and what the system says, or that it is no plain file.
+/// Names the file and the system's message, or says that it is not a plain file.
 pub(crate) fn open(path: &Path, form: &str) -> Result<DraftFile> {
     let refuse = |said: &dyn std::fmt::Display| Error::unread(path, said, form);
     #[cfg(target_arch = "wasm32")]
@@ -37,7 +37,7 @@ fn open_plain(path: &Path, refuse: &dyn Fn(&dyn std::fmt::Display) -> Error) -> 
 /// Reads a text that must be `form` and have at most `most` bytes.
 ///
 /// # Errors
-/// Names the file and what the system says, that it is no plain file, no text, or longer than any that is meant.
+/// Names the file and the system's message, or says that it is not a plain file, not text, or too long.
 pub fn read_text(path: &Path, form: &str, most: u64) -> Result<String> {
     let mut text = String::new();
     let read = open(path, form)?.take(most + 1).read_to_string(&mut text);
@@ -48,7 +48,7 @@ pub fn read_text(path: &Path, form: &str, most: u64) -> Result<String> {
     read.map(|_| text).map_err(|error| Error::unread(path, error, form))
 }
 
-/// Lines, none of which grows without bound.
+/// Lines of bounded length.
 pub(crate) struct BoundedLines<Source> {
     source: Source,
     length: usize,

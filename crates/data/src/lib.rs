@@ -1,12 +1,12 @@
-//! What Slump's runs leave behind: what is measured of grains and piles, recordings in files that other programs
-//! read, problem files, and what a user asks of a run.
+//! Input and output of Slump's runs: requests for runs, measures of grains and piles, recordings in files that other
+//! programs can read, and problem files.
 
 #![cfg_attr(
     target_arch = "wasm32",
     allow(dead_code, unused_imports, reason = "a page has no files")
 )]
 #![warn(missing_docs, unreachable_pub)]
-// They panic where a stream is closed or full: `output` has lines that do not.
+// These macros panic if a stream is closed or full; `output` has functions that do not.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 use slump_core::{contact, error, number, scene, setting, sim, solver, world};

@@ -1,4 +1,5 @@
-//! Files where there is no disk, as in a page: what was given can be read, and what is written can be fetched.
+//! Files in memory for the browser version, which has no disk: given files can be read, and written files can be
+//! fetched.
 
 #![cfg_attr(
     not(target_arch = "wasm32"),
@@ -10,17 +11,17 @@ use std::io::{Cursor, Read, Result, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A file in memory. Copies are handles of one file, with one place to read and write at.
+/// A file in memory. Copies are handles of the same file and share its position.
 #[derive(Clone, Debug, Default)]
 pub struct MemoryFile(Arc<Mutex<Cursor<Vec<u8>>>>);
 
 impl MemoryFile {
-    /// One that holds these bytes.
+    /// A file with these bytes.
     pub fn of(bytes: Vec<u8>) -> Self {
         Self(Arc::new(Mutex::new(Cursor::new(bytes))))
     }
 
-    /// Another handle, as of [`std::fs::File`].
+    /// Another handle of the file, like [`std::fs::File::try_clone`].
     ///
     /// # Errors
     /// None.
@@ -28,7 +29,7 @@ impl MemoryFile {
         Ok(self.clone())
     }
 
-    /// Cuts it, or fills it up with zeros.
+    /// Cuts the file, or extends it with zeros.
     ///
     /// # Errors
     /// None.
@@ -37,7 +38,7 @@ impl MemoryFile {
         Ok(())
     }
 
-    /// It is as safe as it can be.
+    /// Does nothing, because memory needs no synchronisation.
     ///
     /// # Errors
     /// None.
@@ -45,7 +46,7 @@ impl MemoryFile {
         Ok(())
     }
 
-    /// All that is in it.
+    /// The whole content.
     pub fn content(&self) -> Vec<u8> {
         self.cursor().get_ref().clone()
     }
@@ -83,32 +84,32 @@ impl Seek for MemoryFile {
     }
 }
 
-/// Files by their paths.
+/// The given files by path.
 static GIVEN: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
 static WRITTEN: Mutex<Vec<(PathBuf, Vec<u8>)>> = Mutex::new(Vec::new());
 
-/// Gives a file, which can be read from now on.
+/// Adds a file that can be read from now on.
 pub fn give_file(path: PathBuf, bytes: Vec<u8>) {
     GIVEN.lock().unwrap_or_else(PoisonError::into_inner).insert(path, bytes);
 }
 
-/// A file that was given.
+/// Opens a file that was given.
 ///
 /// # Errors
-/// Where none of that name was.
+/// If no file has that name.
 pub fn given_file(path: &Path) -> Result<MemoryFile> {
     let given = GIVEN.lock().unwrap_or_else(PoisonError::into_inner);
     let bytes = given.get(path).cloned();
     bytes.map(MemoryFile::of).ok_or_else(|| std::io::ErrorKind::NotFound.into())
 }
 
-/// Puts a file where it can be fetched.
+/// Stores a written file for [`written_files`].
 pub(crate) fn keep_written(path: &Path, file: &MemoryFile) {
     let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
     written.push((path.to_owned(), file.content()));
 }
 
-/// Fetches what was written since the last call.
+/// Removes and returns the files written since the last call.
 pub fn written_files() -> Vec<(PathBuf, Vec<u8>)> {
     std::mem::take(&mut *WRITTEN.lock().unwrap_or_else(PoisonError::into_inner))
 }

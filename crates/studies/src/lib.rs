@@ -1,8 +1,8 @@
-//! Runs of scenes: one to given times, the sets that the paper's figures show, and sweeps over
-//! parameters.
+//! Runs of scenes: single runs with snapshots, the sets of runs in the paper's figures, sweeps over parameters, error
+//! budgets, speed charts, stability tests and validation experiments.
 
 #![warn(missing_docs, unreachable_pub)]
-// They panic where a stream is closed or full: `output` has lines that do not.
+// These macros panic if a stream is closed or full; `output` has functions that do not.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 use slump_core::{contact, error, number, scene, setting, sim, solver, world};

@@ -1,4 +1,4 @@
-//! The runs that the paper's Fig. 3, 4 and 7 show.
+//! The runs in the paper's Fig. 3, 4 and 7.
 
 use glam::DVec2;
 
@@ -6,29 +6,29 @@ use crate::error::Result;
 use crate::scene::{NewPile, Preset, Scene, cradle, paper_pile};
 use crate::world::Boundary;
 
-/// One run of a figure, with the times that it is shown at.
+/// One run of a figure, with the times at which it is shown.
 #[derive(Clone, Debug)]
 pub struct PaperRun {
-    /// Name of its files, without the time.
+    /// File name without the time.
     pub name: String,
-    /// The figure that it belongs to.
+    /// The figure to which it belongs.
     pub figure: &'static str,
-    /// What it simulates.
+    /// The simulated scene.
     pub scene: Scene,
-    /// Rising, s.
+    /// Times, s, in ascending order.
     pub times_secs: Vec<f64>,
 }
 
-/// Bond numbers of Fig. 4, a row each.
+/// Bond numbers of Fig. 4, one row each.
 pub const FIG4_BONDS: [f64; 2] = [20.0, 100.0];
-/// Time steps of Fig. 4, a column each, s.
+/// Time steps of Fig. 4, one column each, s.
 pub const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
-/// Time steps of Fig. 7, a column each, s.
+/// Time steps of Fig. 7, one column each, s.
 pub const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
-/// Times of Fig. 7, a row each, s.
+/// Times of Fig. 7, one row each, s.
 pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
 
-/// All runs, dearest first.
+/// All runs, the most expensive first.
 ///
 /// # Errors
 /// As [`paper_pile`].
@@ -53,7 +53,7 @@ pub fn paper_runs() -> Result<Vec<PaperRun>> {
         let times_secs = FIG7_TIMES_SECS.to_vec();
         runs.push(PaperRun { name, figure: "fig7", scene, times_secs });
     }
-    // The initial state is shown with the walls that it leans on.
+    // The initial state is shown with the walls that support it.
     let half_width = 0.5 * NewPile::default().box_width_in_diameters * pile.mean_diameter;
     pile.boundaries = [-half_width, half_width]
         .map(|x| Boundary::Segment {

@@ -1,4 +1,4 @@
-//! Pictures as PNG, with what they say of themselves.
+//! Pictures as PNG, with texts about their origin.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use png::{BitDepth, ColorType, Encoder, EncodingError};
 use crate::error::{Error, Result};
 use crate::output::{PendingFile, Texts};
 
-/// Writes a picture as PNG. It is not worth waiting for the disk: it can be drawn again.
+/// Writes a picture as PNG, without waiting for the disk, because the picture can be drawn again.
 ///
 /// # Errors
-/// Names the file and what the system says.
+/// Names the file and the system's message.
 pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
     let bytes = encoded([image.width(), image.height()], ColorType::Rgba, image.as_raw(), texts);
     let mut draft = PendingFile::start(path)?;
@@ -19,10 +19,10 @@ pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
     draft.finish(false)
 }
 
-/// The bytes of such a file without transparency.
+/// The bytes of a PNG file without transparency.
 ///
 /// # Errors
-/// Where the picture has no pixel.
+/// If the picture has no pixels.
 pub fn png_of_rgb(image: &RgbImage, texts: &Texts) -> Result<Vec<u8>> {
     encoded([image.width(), image.height()], ColorType::Rgb, image.as_raw(), texts)
         .map_err(|error| Error::file("picture", error))
@@ -39,7 +39,7 @@ fn encoded(
     encoder.set_color(colours);
     encoder.set_depth(BitDepth::Eight);
     for (keyword, text) in texts.iter() {
-        // Plain text is read by more programs, but it has no Δ.
+        // More programs read plain text chunks, but these cannot contain Δ.
         if text.is_ascii() {
             encoder.add_text_chunk(keyword.into(), text.into())?;
         } else {
@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(plain[0].0, "Software");
         assert_eq!(info.utf8_text.len(), 1);
         assert_eq!(info.utf8_text[0].get_text().unwrap(), "Δt 1e-3 s");
-        // Nothing in it hangs on when it was written.
+        // The file does not depend on the time of writing.
         let again = folder.path().join("b.png");
         write_png(&again, &image, &texts).unwrap();
         assert_eq!(std::fs::read(path).unwrap(), std::fs::read(again).unwrap());

@@ -6,33 +6,32 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{Observables, RunEnding, Simulation, Snapshot, Tally};
 
-/// What takes down a run while it goes on.
+/// Observer of a run.
 pub trait Recorder {
     /// Called after every step. Breaking ends the run.
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>>;
 
-    /// Called at the start, and after every step, before its pictures, with the whole state and the sums so
-    /// far.
+    /// Called at the start, and after every step before its pictures, with the complete state and the sums so far.
     fn state(&mut self, _simulation: &Simulation, _tally: &Tally) -> Result<()> {
         Ok(())
     }
 
-    /// Called at each time that was asked for, with its number and the state at the nearest step.
+    /// Called for each requested time, with its number and the state at the nearest step.
     fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()>;
 }
 
-/// A run that goes on, from its start or from later.
+/// A run in progress.
 #[derive(Debug)]
 pub struct OnItsWay {
     /// The simulation so far.
     pub simulation: Simulation,
     /// Sums over its steps so far.
     pub tally: Tally,
-    /// The number of the first picture that is not taken yet.
+    /// The number of the next picture.
     pub next_picture: usize,
 }
 
-/// What a run leaves.
+/// The result of a run.
 #[derive(Debug)]
 pub struct Recorded {
     /// The simulation at its end.
@@ -41,22 +40,22 @@ pub struct Recorded {
     pub tally: Tally,
     /// True if the recorder ended it.
     pub interrupted: bool,
-    /// Why it ended early, if it failed: its state was no longer finite, or it could not be recorded.
+    /// The error that ended it early, if any: its state was no longer finite, or it could not be recorded.
     pub failure: Option<Error>,
 }
 
-/// Runs a scene to `until_secs`, with pictures at `times_secs` (rising, s). What it leaves says
-/// what ended it early.
+/// Runs a scene to `until_secs`, with pictures at `times_secs` (ascending, s). The result contains the error that ended
+/// it early, if any.
 ///
 /// # Errors
-/// Where the scene is not sound, or a time lies outside 0 … duration.
+/// If the scene is invalid, or a time is outside 0 … duration.
 pub fn record(
     scene: &Scene,
     times_secs: &[f64],
     until_secs: f64,
     recorder: &mut impl Recorder,
 ) -> Result<Recorded> {
-    // Half a step of room, so that a duration that is no multiple of Δt can be asked for.
+    // With a margin of half a step, so that a duration that is not a multiple of Δt is allowed.
     let latest = scene.duration_secs + 0.5 * scene.parameters.time_step_secs;
     let outside = |time: &&f64| !(0.0..=latest).contains(*time);
     if let Some(time) = times_secs.iter().chain([&until_secs]).find(outside) {
@@ -68,8 +67,8 @@ pub fn record(
     Ok(go_on(start, times_secs, until_secs, recorder))
 }
 
-/// Lets a run go on to `until_secs`, with those pictures at `times_secs` (rising, s) that are not taken yet.
-/// What it leaves says what ended it early.
+/// Continues a run to `until_secs`, with the remaining pictures at `times_secs` (ascending, s). The result contains the
+/// error that ended it early, if any.
 pub fn go_on(
     mut run: OnItsWay,
     times_secs: &[f64],
@@ -114,7 +113,7 @@ impl OnItsWay {
                 recorder.picture(number, simulation.snapshot())?;
             }
             if let RunEnding::NotFinite(_) = ended {
-                // The row of the step that blew up is one of them, so that table and tally tell the same.
+                // The step that became non-finite also has a row, so that table and tally agree.
                 tally.add(simulation.observables());
                 let _ = recorder.step(simulation.observables())?;
             }

@@ -1,4 +1,4 @@
-//! Initial states that are new piles: settled once, in memory and on disk, shared by all runs.
+//! Initial states that are new piles: settled once, kept in memory and on disk, and shared by all runs.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ pub(super) struct States {
 }
 
 impl States {
-    /// Reads or makes the states that `configs` start from. They lie in `folder`.
+    /// Reads or makes the initial states of `configs`, which are stored in `folder`.
     pub(super) fn of<'a>(
         folder: PathBuf,
         configs: impl Iterator<Item = &'a Config>,
@@ -52,7 +52,7 @@ impl States {
         Ok(Self { settled: settled? })
     }
 
-    /// The scene of a config, with its settled grains where it makes a new pile.
+    /// The scene of a config, with its settled grains if it asks for a new pile.
     pub(super) fn scene(&self, config: &Config) -> Result<Scene> {
         match config.new_pile()?.and_then(|pile| self.settled.get(&name(&pile))) {
             Some(grains) => config.scene_from(grains.clone()),
@@ -61,11 +61,11 @@ impl States {
     }
 }
 
-/// The settled grains of a pile: those that lie in `folder`, or new ones, which are then written there. A state
-/// reads back bit for bit, so that it does not matter whether it was read or made.
+/// The settled grains of a pile: read from `folder`, or made and then written there. A state reads back bit for bit, so
+/// both give the same result.
 ///
 /// # Errors
-/// As [`settle`], and where the folder cannot be read or written.
+/// As [`settle`], and if the folder cannot be read or written.
 pub fn settled_pile(
     folder: &Path,
     pile: &NewPile,
@@ -81,7 +81,7 @@ pub fn settled_pile(
     Ok(grains)
 }
 
-/// The grains that a file holds; nothing where it is not there, or damaged, which is noted.
+/// The grains in a file; `None` if the file is missing, or damaged, which is reported.
 fn read(path: &Path) -> Result<Option<Vec<Grain>>> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,

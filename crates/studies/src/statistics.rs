@@ -1,12 +1,12 @@
-//! Means with intervals, tests and shares. Distributions come from statrs.
+//! Means with intervals, tests and proportions. Distributions come from statrs.
 
 use glam::{DMat3, DVec3};
 use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 
-/// Share of intervals that hold the true value.
+/// Confidence level: the fraction of intervals that contain the true value.
 const CONFIDENCE: f64 = 0.95;
 
-/// p-value of the claim that one thing or the other is so, from the p-values of both (Bonferroni).
+/// p-value of the claim that at least one of two claims is true, from the p-values of both (Bonferroni).
 pub(super) fn p_of_either(one: f64, other: f64) -> f64 {
     (2.0 * one.min(other)).min(1.0)
 }
@@ -26,13 +26,12 @@ pub struct Mean {
     pub count: usize,
 }
 
-/// Mean of independent values with Student's interval. With fewer than two values the interval is
-/// all numbers.
+/// Mean of independent values with Student's interval. With fewer than two values the interval is unbounded.
 pub fn mean(values: &[f64]) -> Mean {
     mean_with(values, CONFIDENCE)
 }
 
-/// The same with an interval that holds the true mean in another share of samples.
+/// Like [`mean`], with an interval of another confidence level.
 pub(super) fn mean_with(values: &[f64], confidence: f64) -> Mean {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count.max(1) as f64;
@@ -51,8 +50,8 @@ fn student(count: usize) -> Option<StudentsT> {
 }
 
 impl Mean {
-    /// One-sided p-value of the claim that the true mean is above `bound`: how often a mean this
-    /// high comes out where the true one is no more than the bound.
+    /// One-sided p-value of the claim that the true mean is above `bound`: the probability of a mean this high if the
+    /// true mean is at most the bound.
     pub(super) fn p_above(&self, bound: f64) -> f64 {
         let Some(student) = student(self.count) else { return 1.0 };
         if self.standard_error == 0.0 {
@@ -61,17 +60,17 @@ impl Mean {
         1.0 - student.cdf((self.mean - bound) / self.standard_error)
     }
 
-    /// Standard deviation of the values; all numbers where there are fewer than two.
+    /// Standard deviation of the values; infinite for fewer than two values.
     pub(super) fn spread(&self) -> f64 {
         self.standard_error * (self.count as f64).sqrt()
     }
 
-    /// As [`Mean::p_above`], for below.
+    /// Like [`Mean::p_above`], for below.
     pub(super) fn p_below(&self, bound: f64) -> f64 {
         Self { mean: -self.mean, ..*self }.p_above(-bound)
     }
 
-    /// The mean and its interval with so many decimals and signs.
+    /// The mean and its interval with this many decimals, with signs.
     pub(super) fn signed(&self, decimals: usize) -> String {
         let Self { mean, low, high, .. } = self;
         format!("{mean:+.decimals$} ({low:+.decimals$} … {high:+.decimals$})")
@@ -93,7 +92,7 @@ pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
     products / squares
 }
 
-/// Share of `hits` in `count` with its 95 % interval (Clopper and Pearson 1934).
+/// Proportion of `hits` in `count` with its 95 % interval (Clopper and Pearson 1934).
 pub(super) fn share(hits: usize, count: usize) -> (f64, f64, f64) {
     let tail = 0.5 * (1.0 - CONFIDENCE);
     let (k, n) = (hits as f64, count as f64);
@@ -104,8 +103,8 @@ pub(super) fn share(hits: usize, count: usize) -> (f64, f64, f64) {
     (k / n, low, high)
 }
 
-/// Where a curve turns: the break of the best broken line through points sorted by x, looked for
-/// among `candidates`. Both halves need at least two points.
+/// The break of the best broken line through points sorted by x, chosen from `candidates`. Both parts need at least two
+/// points.
 pub(super) fn turning_point(points: &[(f64, f64)], candidates: &[f64]) -> Option<f64> {
     let misfit = |at: f64| -> Option<f64> {
         let left = points.iter().filter(|(x, _)| *x < at).count();
@@ -165,7 +164,7 @@ mod tests {
         use rand::{RngExt, SeedableRng};
         let mut random = rand_pcg::Pcg64::seed_from_u64(1);
         let holding = (0..4000).filter(|_| {
-            // The sum of twelve uniform numbers is as good as normal here, with mean 6.
+            // The sum of twelve uniform numbers, which has mean 6, is sufficiently normal here.
             let values: Vec<f64> =
                 (0..8).map(|_| (0..12).map(|_| random.random_range(0.0..1.0)).sum()).collect();
             let mean = mean(&values);
@@ -176,7 +175,7 @@ mod tests {
 
     #[test]
     fn where_neither_is_so_one_of_two_is_seen_in_five_of_a_hundred() {
-        // On a grid of two even p-values: 1 − 0.975² of it.
+        // On a grid of two uniform p-values, the rate should be 1 − 0.975².
         let side = 400;
         let p = |place: usize| (place as f64 + 0.5) / side as f64;
         let seen = (0..side * side).filter(|at| p_of_either(p(at % side), p(at / side)) < 0.05);

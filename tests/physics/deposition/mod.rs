@@ -1,5 +1,5 @@
-//! Piles made by drop and roll: where single discs come to lie, what holds of every packing, and that a
-//! settled pile stays.
+//! Piles made by drop and roll: final places of single discs, properties of all packings, and settled piles that stay
+//! at rest.
 
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -11,11 +11,12 @@ use crate::program::*;
 
 const FLOOR: f64 = -10.0;
 
-/// Where a disc comes to lie on others that are given by place and radius, and what holds it, where that is looked at.
+/// A dropped disc: name, half width, discs (place and radius), start and radius, expected place, and expected
+/// supports if they are checked.
 type Drop<'a> =
     (&'a str, f64, &'a [[f64; 3]], [f64; 2], [f64; 2], Option<(Support, Option<Support>)>);
 
-/// Each is dropped, and its mirror image on the mirrored surface.
+/// Each disc is dropped, and so is its mirror image on the mirrored surface.
 #[test]
 fn single_discs_come_to_lie_where_geometry_says() {
     let (floor, between) = ((Support::Floor, None), (Support::Disc(0), Some(Support::Disc(1))));
@@ -55,7 +56,7 @@ fn single_discs_come_to_lie_where_geometry_says() {
             [2.625, (9.0f64 - 2.625 * 2.625).sqrt()],
             None,
         ),
-        // 3, 4, 5 from the first.
+        // A 3-4-5 triangle with the first disc.
         (
             "the second is above the disc that leans on it",
             50.0,
@@ -81,8 +82,8 @@ fn single_discs_come_to_lie_where_geometry_says() {
             None,
         ),
         ("against the wall", 2.2, &one, [0.5, 1.0], [1.2, 1.6], on(Support::Wall)),
-        // From beside the first, below the second, which is not to catch it from above: off the first at x = 2, then
-        // left off the third at x = 0.5.
+        // The disc starts beside the first and passes below the second, which must not catch it from above. It leaves
+        // the first at x = 2 and then the left side of the third at x = 0.5.
         (
             "past what hangs over",
             50.0,
@@ -154,11 +155,11 @@ proptest! {
     }
 }
 
-/// True if forces along two of these directions can bear a weight.
+/// True if forces along two of these directions can carry a weight.
 fn is_held(normals: &[DVec2]) -> bool {
     let bear = |one: DVec2, other: DVec2| {
         let across = one.perp_dot(other);
-        // a · one + b · other = up.
+        // Solves a · one + b · other = up.
         let (a, b) = (-other.x / across, one.x / across);
         a >= -1e-9 && b >= -1e-9 && a.is_finite() && b.is_finite()
     };
@@ -228,7 +229,7 @@ fn a_pile_says_how_much_it_moves_and_overlaps_and_both_are_little() {
 fn a_pile_at_rest_stays_at_rest_under_the_papers_law() {
     for seed in 0..4 {
         let grains = settle(&pile(300, 24.0, seed), |_| true).expect("at rest");
-        // Without cohesion, and as it comes.
+        // Without cohesion, and with the scene's own.
         for bond in [0.0, 20.0] {
             let mut scene = walled(grains.clone(), 24.0);
             scene.parameters.bond = bond;
@@ -242,7 +243,7 @@ fn a_pile_at_rest_stays_at_rest_under_the_papers_law() {
             let slump = run.observables().slump;
             assert!(slump.abs() < 1e-3, "Bond {bond}, seed {seed}: it sank by {slump:e}");
         }
-        // It is the walls that hold it: the check above can fail.
+        // Without the walls the pile moves, so the check above can fail.
         let mut released = pile_of(grains, 24.0).expect("a pile");
         released.parameters.bond = 0.0;
         let mut run = start(&released);
@@ -339,7 +340,7 @@ fn options_and_scene_files_ask_for_the_same_pile() {
     };
     let dropped = read(&format!("{source}deposition = \"drop-and-roll\"\n")).expect("a scene");
     assert!(dropped == asked.grains);
-    // Files from before there was a choice.
+    // Files from before the option `deposition` existed.
     let rained = read(&source.replace("new-pile", "rain")).expect("a scene");
     assert_eq!(rained, read(source).expect("a scene"));
     assert!(rained != dropped);

@@ -1,4 +1,4 @@
-//! Cells, against areas that are known and against the nearest disc of every point of a raster.
+//! Cell areas, against known areas and against the nearest disc of every point of a raster.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use super::packings::{among, box_walls, disc, discs};
 
 const EXACT: f64 = 1e-12;
 
-/// What the rule says, of one point: the disc of least power, if that is below 3r̄².
+/// The owner of a point by definition: the disc of least power, if that is below 3r̄².
 fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usize> {
     let power =
         |&(centre, radius): &(DVec2, f64)| (point - centre).length_squared() - radius * radius;
@@ -18,8 +18,8 @@ fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usi
     (least < largest_power).then_some(index)
 }
 
-/// Areas of cells by counting the points of a raster with so many steps along the box around all grains: in the
-/// box, and all of the room.
+/// Cell areas by counting the points of a raster with `steps` steps along the box around all grains: within the box,
+/// and within the whole room.
 fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64; 2]> {
     let grains = &moment.grains;
     let radii: f64 = grains.iter().map(|grain| grain.radius).sum();
@@ -51,7 +51,7 @@ fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64;
     areas
 }
 
-/// Discs of very different sizes that overlap, touch and stand alone.
+/// Discs of very different sizes that overlap, touch or are isolated.
 fn scattered(count: usize, seed: u64) -> Vec<GrainState> {
     let mut random = random(seed);
     let grains = (0..count).map(|_| {
@@ -120,7 +120,7 @@ fn cells_of_unequal_discs_that_lie_close_fill_their_box() {
 
 #[test]
 fn two_discs_that_touch_part_at_their_contact() {
-    // A large disc and a small one in a box as high as the large one.
+    // A large and a small disc in a box as high as the large one.
     let (large, small) = (3.0, 1.0);
     let grains = vec![
         disc(DVec2::new(large, large), large),
@@ -141,11 +141,11 @@ fn a_disc_alone_has_the_room_within_its_reach() {
     let one = alone(&discs(vec![disc(DVec2::new(0.3, 0.7), 1.0)]));
     assert_close(one.cell_area, 4.0, EXACT, "in the box around it");
     assert!(one.solid_fraction.is_nan());
-    // Two far apart along a row share a long box of which each has what is within 2r.
+    // Two discs far apart in a row share a long box. Each owns the points within 2r.
     let two = discs(vec![disc(DVec2::ZERO, 1.0), disc(DVec2::new(50.0, 0.0), 1.0)]);
     let expected = 2.0 + 3f64.sqrt() + 2.0 * PI / 3.0;
     assert_close(alone(&two).cell_area, expected, EXACT, "in a long box");
-    // The one at the lower left of a wide box: a quarter of the circle, two strips, and the corner's square.
+    // The disc at the lower left of a wide box owns a quarter of the circle, two strips, and the square in the corner.
     let far = [DVec2::ZERO, DVec2::new(90.0, 30.0), DVec2::new(20.0, 80.0)];
     let three = discs(far.map(|place| disc(place, 1.0)).to_vec());
     let strip = 0.5 * 3f64.sqrt() + PI / 3.0;
@@ -162,7 +162,7 @@ fn a_vacancy_opens_the_cells_around_it_and_a_pore_does_not() {
     assert_eq!(measured.pile.closed_cells, closed - 7);
     let empty: Vec<_> = measured.grains.iter().filter(|grain| grain.cell_area.is_nan()).collect();
     assert_eq!(empty.len(), 1);
-    // The middle of the hole is exactly at the border of the packing: nothing of it is left out.
+    // The middle of the hole is exactly on the border of the packing, so the packing includes all of it.
     assert_close(measured.pile.area, area, EXACT, "A");
 }
 
@@ -211,7 +211,7 @@ fn walls_made_of_sides_cut_as_the_planes_they_lie_in() {
 
 #[test]
 fn a_corner_cuts_the_cell_of_what_rests_on_it() {
-    // Half a radius below the centre is the upper corner of a square that stands on another corner.
+    // The point half a radius below the centre is the upper corner of a square that stands on another corner.
     let tip = DVec2::new(0.0, -0.5);
     let others = [DVec2::NEG_ONE, DVec2::new(0.0, -2.0), DVec2::new(1.0, -1.0)];
     let square = others.map(|corner| tip + corner).into_iter().chain([tip]).collect();

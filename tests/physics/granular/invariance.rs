@@ -1,4 +1,4 @@
-//! What no measure may hang on: where the pile is, which side it is seen from, and how grains are numbered.
+//! No measure depends on the pile's position, the side from which it is seen, or the numbering of the grains.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ fn for_random_moments(property: impl Fn(u64, Moment) -> Result<(), TestCaseError
     });
 }
 
-/// Discs at random over a floor and some fixed discs, with forces at random where they overlap, one of them lost.
+/// Random discs over a floor and some fixed discs, with random forces where they overlap. One disc is lost.
 fn heap(seed: u64, count: usize) -> Moment {
     let mut random = random(seed);
     let grains = (0..count).map(|_| {
@@ -53,7 +53,7 @@ fn heap(seed: u64, count: usize) -> Moment {
     heap
 }
 
-/// Every place through one function and every vector through another.
+/// Maps every place by one function and every vector by another.
 fn mapped(
     moment: &Moment,
     place: impl Fn(DVec2) -> DVec2,
@@ -84,7 +84,7 @@ fn mapped(
     mapped
 }
 
-/// How the columns of a row change: what each is to be, of what all were.
+/// Expected new value of a column, given its name and all old values of the row.
 type Expected<'a> = &'a dyn Fn(&str, &dyn Fn(&str) -> f64) -> f64;
 
 fn compare<Row>(
@@ -100,7 +100,7 @@ fn compare<Row>(
         let (found, expected) =
             (column.value.number(after).unwrap_or(f64::NAN), expected(column.name, &was));
         let off = if column.name.ends_with("_direction") {
-            // 0 and 180 are one.
+            // 0° and 180° are the same axis.
             (found - expected).to_radians().sin().abs()
         } else {
             (found - expected).abs() / expected.abs().max(1.0)
@@ -208,7 +208,7 @@ fn numbers_of_grains_are_names_alone() {
     });
 }
 
-/// A contact of these grains, seen from that of the smaller number.
+/// The contact of these grains as seen from the one with the smaller number.
 fn by_number(contact: ContactState, [grain, other]: [u32; 2]) -> ContactState {
     if grain < other {
         return ContactState { grain, other: OtherBody::Grain(other), ..contact };

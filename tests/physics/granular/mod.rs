@@ -1,4 +1,4 @@
-//! Measures of piles, against what is known of packings exactly and against what must hold of any pile.
+//! Measures of piles, against exact results for packings and against properties of all piles.
 
 mod cells;
 mod fields;

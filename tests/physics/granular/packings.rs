@@ -1,4 +1,4 @@
-//! Moments made by hand, and square and triangular packings under known loads.
+//! Handmade moments, and square and triangular packings under known loads.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -41,14 +41,14 @@ pub fn discs(grains: Vec<GrainState>) -> Moment {
     }
 }
 
-/// The same among these fixed bodies.
+/// The moment with these fixed bodies.
 pub fn among(mut moment: Moment, boundaries: Vec<Boundary>, fixed_discs: Vec<Disc>) -> Moment {
     let around = (*moment.surroundings).clone();
     moment.surroundings = Arc::new(Surroundings { fixed_discs, boundaries, ..around });
     moment
 }
 
-/// Lets grain i touch a body in a normal, of which it is `gap` apart, with N and T.
+/// Adds a contact of grain i with a body along a normal, with its gap, N and T.
 fn press_on(
     moment: &mut Moment,
     i: usize,
@@ -73,7 +73,7 @@ fn press_on(
     });
 }
 
-/// Lets grains i and j touch with N and T.
+/// Adds a contact of grains i and j with N and T.
 pub fn touch(moment: &mut Moment, [i, j]: [usize; 2], forces: [f64; 2]) {
     let (grain, other) = (moment.grains[i], moment.grains[j]);
     let branch = grain.position - other.position;
@@ -81,7 +81,7 @@ pub fn touch(moment: &mut Moment, [i, j]: [usize; 2], forces: [f64; 2]) {
     press_on(moment, i, (OtherBody::Grain(j as u32), branch, gap), forces);
 }
 
-/// Lets grain i touch the half-space of that number with N and T.
+/// Adds a contact of grain i with half-space number `wall`, with N and T.
 pub fn lean(moment: &mut Moment, i: usize, wall: usize, forces: [f64; 2]) {
     let Boundary::HalfSpace { point, normal } = moment.surroundings.boundaries[wall] else {
         panic!("boundary {wall} is no half-space");
@@ -114,7 +114,7 @@ struct Loads {
     xy: f64,
 }
 
-/// Discs in rows and columns in a box that they fill, its lower left corner at `corner`.
+/// Discs in rows and columns that fill a box whose lower left corner is `corner`.
 fn square_discs(columns: usize, rows: usize, corner: DVec2) -> Moment {
     let centre = |index: usize| {
         let place = DVec2::new((index % columns) as f64, (index / columns) as f64);
@@ -125,11 +125,11 @@ fn square_discs(columns: usize, rows: usize, corner: DVec2) -> Moment {
     among(discs(grains), box_walls(corner, corner + size), Vec::new())
 }
 
-/// The same with the forces that homogeneous loads make.
+/// [`square_discs`] with the contact forces of homogeneous loads.
 fn square_packing(columns: usize, rows: usize, corner: DVec2, loads: Loads) -> Moment {
     let mut moment = square_discs(columns, rows, corner);
     let [along_x, along_y] = [loads.xx, loads.yy].map(|load| 2.0 * RADIUS * load);
-    // On what lies to the right, t is +y and so is the shear; on what lies above, t is −x.
+    // On the body at the right, t is +y and the shear points there; on the body above, t is −x.
     let shear = 2.0 * RADIUS * loads.xy;
     for row in 0..rows {
         for column in 0..columns {
@@ -151,7 +151,7 @@ fn square_packing(columns: usize, rows: usize, corner: DVec2, loads: Loads) -> M
     moment
 }
 
-/// Rows of `columns` discs, each second row shifted by a radius, without anything around.
+/// Rows of `columns` discs, each second row shifted by a radius, without walls.
 pub fn triangular_discs(columns: usize, rows: usize) -> Moment {
     let centre = |index: usize| {
         let (row, column) = (index / columns, index % columns);
@@ -161,7 +161,7 @@ pub fn triangular_discs(columns: usize, rows: usize) -> Moment {
     discs((0..columns * rows).map(|index| disc(centre(index), RADIUS)).collect())
 }
 
-/// Lets all pairs that touch do so with the forces that belong to their directions: 0°, 60° and 120°.
+/// Adds contacts to all touching pairs, with one force for each direction: 0°, 60° and 120°.
 fn press(moment: &mut Moment, forces: [f64; 3]) {
     let centres: Vec<DVec2> = moment.grains.iter().map(|grain| grain.position).collect();
     for i in 0..centres.len() {
@@ -176,7 +176,7 @@ fn press(moment: &mut Moment, forces: [f64; 3]) {
     }
 }
 
-/// What has all its six neighbours.
+/// True if a grain has all six neighbours.
 fn is_inside(moment: &Moment, grain: &GrainState) -> bool {
     let near = |other: &&GrainState| other.position.distance(grain.position) < 2.0001 * RADIUS;
     moment.grains.iter().filter(near).count() == 7
@@ -232,7 +232,7 @@ fn the_principal_direction_is_that_of_largest_compression() {
 #[test]
 fn a_square_packing_has_no_fabric_and_a_chain_all_of_it() {
     let loads = Loads { xx: 1.0, yy: 0.0, xy: 0.0 };
-    // As many contacts along x as along y, for walls stand at all sides.
+    // There are as many contacts along x as along y, because all sides have walls.
     let square = PileMeasures::of(&square_packing(4, 4, DVec2::ZERO, loads));
     assert_close(square.fabric_xx, 0.5, EXACT, "F_xx of a square packing");
     assert_close(square.fabric_yy, 0.5, EXACT, "F_yy of a square packing");
@@ -259,7 +259,7 @@ fn cells_of_a_triangular_packing_have_its_stress_and_its_density() {
     let forces = [3.0, 5.0, 11.0];
     press(&mut moment, forces);
     let directions = [0.0f64, 60.0, 120.0].map(|degrees| DVec2::from_angle(degrees.to_radians()));
-    // Each inner grain has both ends of half a branch a direction, in a cell of 2√3 r².
+    // Each inner grain has two halves of a branch per direction, in a cell of 2√3 r².
     let scale = 2.0 * RADIUS / (2.0 * 3f64.sqrt() * RADIUS * RADIUS);
     let sum = |of: fn(DVec2) -> f64| {
         scale * directions.iter().zip(forces).map(|(&n, force)| force * of(n)).sum::<f64>()
@@ -283,7 +283,7 @@ fn cells_of_a_triangular_packing_have_its_stress_and_its_density() {
 
 #[test]
 fn a_triangular_packing_without_walls_fills_the_box_around_it() {
-    // Each second row is one disc shorter, so that the first and the last reach both sides.
+    // Each second row is one disc shorter, so that the first and last rows reach both sides.
     let mut moment = triangular_discs(9, 5);
     let is_last_of_short_row = |index: usize| index % 18 == 17;
     let mut index = 0..;
@@ -293,7 +293,7 @@ fn a_triangular_packing_without_walls_fills_the_box_around_it() {
     let (width, height) = (18.0 * RADIUS, (2.0 + 4.0 * 3f64.sqrt()) * RADIUS);
     assert_close(measured.pile.box_area, width * height, EXACT, "the box");
     assert_close(measured.pile.area, width * height, EXACT, "A");
-    // Open are the first and the last row, and both ends of all others.
+    // The cells of the first and last rows and at both ends of all other rows are open.
     assert_eq!(measured.pile.closed_cells, 6 + 7 + 6);
 }
 

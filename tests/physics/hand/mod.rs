@@ -1,11 +1,11 @@
-//! What a hand changes between two steps: grains that come and go, and walls that are drawn.
+//! Changes by hand between two steps: added and removed grains, and drawn walls.
 
 use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const GRAVITY: DVec2 = DVec2::new(0.0, -9.8);
 
-/// Three rows of grains that have fallen on a floor between walls, cohesive.
+/// Three rows of cohesive grains that have fallen on a floor between walls.
 fn heap() -> Scene {
     let grains = (0..12).map(|number| {
         let (row, column) = (number / 4, number % 4);
@@ -23,14 +23,14 @@ fn heap() -> Scene {
     heap
 }
 
-/// The heap stepped in each way that knows it.
+/// The heap in each way to step that accepts it.
 fn in_every_way() -> Vec<(String, Scene)> {
     let mut heap = heap();
     heap.solver.max_sweeps = 200;
     in_each_way(&heap, every_way()).filter(|(_, scene)| scene.simulation().is_ok()).collect()
 }
 
-/// Where some grains are and how they go, to the last bit.
+/// Bits of the positions and velocities of some grains.
 fn bits(run: &Simulation, grains: std::ops::Range<usize>) -> Vec<[u64; 6]> {
     crate::common::bits(run)[grains].to_vec()
 }
@@ -76,11 +76,11 @@ fn forces_and_bonds_of_the_others_outlive_a_grain_that_comes_and_goes() {
 #[test]
 fn the_grains_after_one_that_is_taken_out_keep_what_they_have() {
     for (way, scene) in in_every_way() {
-        // Springs are as stiff as the weight of all grains asks for.
+        // The springs' stiffness depends on the weight of all grains.
         if scene.stepper == Stepper::Dem {
             continue;
         }
-        // One that touches nothing comes first in the one scene, and is not there in the other.
+        // A grain without contacts comes first in one scene and is missing in the other.
         let mut with = scene.clone();
         let Disc { position, radius } = far(RADIUS);
         with.grains.insert(0, Grain::at_rest(position, radius));
@@ -148,8 +148,9 @@ fn a_grain_that_is_added_in_motion_is_one_of_the_scene() {
     assert_eq!(added.world().grains.len(), 13);
 }
 
-/// Of a run's last step: the largest part of a grain's change of momentum that weight, body forces and contacts leave open, in
-/// the largest body force times Δt; then the same of the change of kinetic energy and the works, in that energy.
+/// Errors of the last step's balances: the largest part of a grain's momentum change that weight, body forces and
+/// contacts do not explain, over the largest body force times Δt; and the difference between kinetic energy change
+/// and works, over the kinetic energy.
 fn left_open(run: &mut Simulation) -> [f64; 2] {
     let before = run.world().grains.velocities.clone();
     let energy = run.observables().kinetic_energy;
@@ -190,7 +191,7 @@ fn body_forces_are_in_momentum_and_works_of_every_way_and_are_held() {
         run.set_body_forces(&forces).expect("sound forces");
         for _ in 0..10 {
             let [momentum, energy] = left_open(&mut run);
-            // It keeps neither.
+            // `avbd` conserves neither.
             let is_exact = momentum < 1e-9 && energy < 1e-9;
             assert!(is_exact || scene.stepper == Stepper::Avbd, "{way}: {momentum} {energy}");
         }
@@ -244,13 +245,13 @@ fn slump_counts_a_new_grain_from_where_it_is_put() {
     let settled = run.observables().slump;
     run.edit(&Edit::Add(far(RADIUS))).expect("there is room");
     take_steps(&mut run, 1);
-    // It has fallen by less than a thousandth of what all heights come to.
+    // It has fallen by less than a thousandth of the sum of all heights.
     let heights: f64 = run.places().iter().map(|at| at.y).sum();
     let slump = run.observables().slump;
     assert!(slump.abs() < settled.abs() + 1e-3 && heights > 0.15, "{settled} {slump} {heights}");
 }
 
-/// A grain without weight before a wall.
+/// A weightless grain before a wall.
 fn before_a_wall(stepper: Stepper, restitution: f64) -> Scene {
     let grain = Grain::at_rest(DVec2::new(4.0 * RADIUS, 0.0), RADIUS);
     let physics = Physics::FULL;
@@ -262,7 +263,7 @@ fn before_a_wall(stepper: Stepper, restitution: f64) -> Scene {
     scene
 }
 
-/// Speed of a hand on a scene without gravity, m/s: a half of √(g·d), g = 9.8 m/s².
+/// Speed of a hand on a scene without gravity, m/s: half of √(g·d) with g = 9.8 m/s².
 fn speed_of_hand() -> f64 {
     0.5 * (9.8 * 2.0 * RADIUS).sqrt()
 }
@@ -285,11 +286,11 @@ fn a_wall_that_is_drawn_hits_grains_with_its_speed_and_stays_where_it_was_drawn(
         }
         assert!((fastest_wall - speed_of_hand()).abs() < 1e-9, "{stepper:?}: {fastest_wall}");
         assert!(place(&run).distance(goal) < 1e-12, "{stepper:?}");
-        // The grain was at rest, so it leaves a heavy wall at (1 + ρ) times its speed.
+        // The grain was at rest, so a heavy wall gives it (1 + ρ) times the wall's speed.
         let speed = run.velocity(0).x;
         let rebound = if stepper == Stepper::Avbd { 0.0 } else { restitution };
         let expected = (1.0 + rebound) * speed_of_hand();
-        // Springs and many substeps come near to it.
+        // Springs with many substeps are approximate.
         let tolerance = if stepper == Stepper::Moreau { 1e-9 } else { 0.06 };
         assert!(
             (speed / expected - 1.0).abs() < tolerance,

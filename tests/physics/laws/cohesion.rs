@@ -1,11 +1,11 @@
-//! Cohesion whose force refers to an acceleration of its own, so that it needs no gravity.
+//! Cohesion that refers to an acceleration of its own and therefore needs no gravity.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.01;
 const BOND: f64 = 20.0;
 
-/// Two discs without weight that touch, one of which moves away with 1 mm/s.
+/// Two weightless discs that touch; one moves away at 1 mm/s.
 fn pulled_pair(stepper: Stepper, gravity: DVec2, bond_acceleration: f64) -> Scene {
     let at_rest = weightless(Grain::at_rest(DVec2::ZERO, RADIUS));
     let place = 2.0 * RADIUS * (1.0 - 1e-6) * DVec2::X;
@@ -15,7 +15,7 @@ fn pulled_pair(stepper: Stepper, gravity: DVec2, bond_acceleration: f64) -> Scen
     Scene { stepper, solver: SolverSettings::default(), ..scene }
 }
 
-/// Speed at which the two part after 0.2 s, m/s, and their distance beyond touch, in radii. Each step is solved.
+/// Relative speed after 0.2 s, m/s, and gap in radii. Each step is solved.
 fn parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     for _ in 0..200 {

@@ -1,8 +1,8 @@
-//! What contacts cannot change: momentum, angular momentum but for the overlap, energy's budget.
+//! Quantities that contacts cannot change: momentum, angular momentum except for the overlap, and the energy budget.
 
 use crate::common::*;
 
-/// 40 discs of unequal size that fly towards the origin, spinning, and feel no gravity.
+/// 40 discs of unequal size that fly towards the origin and spin, without gravity.
 fn cluster(physics: Physics, bond: f64, restitution: f64, friction: f64) -> Scene {
     let mut random = random(7);
     let grains = (0..40)
@@ -26,7 +26,7 @@ fn cluster(physics: Physics, bond: f64, restitution: f64, friction: f64) -> Scen
     }
 }
 
-/// About the origin, spins included, kg·m²/s: the sum, and that of the absolute terms.
+/// Angular momentum about the origin, spins included, and the sum of the absolute terms, kg·m²/s.
 fn angular_momentum(run: &Simulation) -> (f64, f64) {
     let grains = run.grains();
     let orbits = (0..grains.len())
@@ -56,8 +56,8 @@ fn a_free_cluster_keeps_its_momentum() {
 
 #[test]
 fn the_overlap_alone_changes_the_angular_momentum() {
-    // The impulses of a pair act at r_i from one centre and r_j from the other, but the centres are
-    // only r_i + r_j + gap apart: P_t on both makes the couple gap·P_t, and nothing else does.
+    // The impulses of a pair act at r_i from one centre and r_j from the other, but the centres are only r_i + r_j +
+    // gap apart: P_t on both exerts the couple gap·P_t. Nothing else changes the angular momentum.
     let mut run = start(&cluster(Physics::FULL, 30.0, 0.3, 0.5));
     let (mut explained, mut largest) = (0.0, 0f64);
     let (_, scale) = angular_momentum(&run);
@@ -77,11 +77,11 @@ fn the_overlap_alone_changes_the_angular_momentum() {
         largest = largest.max(couple.abs());
     }
     assert!(largest > 1e-9 * scale, "there was friction");
-    // In all, the overlaps that steps of 1e-3 s leave cost this cluster 0.1 %.
+    // With steps of 1e-3 s the overlaps change this cluster's angular momentum by 0.1 % in all.
     assert!(explained.abs() < 2e-3 * scale, "{explained:e} of {scale:e}");
 }
 
-/// Steps and checks the budget of each: ΔKE = gravity's work + contacts' works.
+/// Steps and checks the energy budget of each step: ΔKE = work of gravity + works of contacts.
 fn check_budget(run: &mut Simulation, count: usize) {
     let mut contacts = 0;
     for _ in 0..count {
@@ -89,7 +89,7 @@ fn check_budget(run: &mut Simulation, count: usize) {
         let (after, off, scale) = balance(run);
         contacts += after.contacts;
         assert!(off <= 1e-11 * scale, "step {}: off by {off:e}", after.step);
-        // Gravity's work by itself: its impulse times the mean velocity.
+        // Gravity's work, computed separately: its impulse times the mean velocity.
         let world = run.world();
         let by_gravity: f64 = (0..world.grains.len())
             .filter(|&k| world.grains.feels_gravity[k])
@@ -111,7 +111,7 @@ fn every_step_of_a_cohesive_pile_closes_its_energy_budget() {
     for ((bond, friction), touch_tolerance) in pairs(kinds, [0.0, 1e-5, 1e-2]) {
         let mut scene = paper_pile().expect("the shipped state");
         scene.parameters = Parameters { touch_tolerance, ..parameters(bond, 2e-3, 0.1, friction) };
-        // The budget closes however badly a step is solved.
+        // The budget closes even if steps are badly solved.
         scene.solver.max_sweeps = 50;
         check_budget(&mut start(&scene), 100);
     }
@@ -123,13 +123,13 @@ fn every_step_of_a_cohesive_pile_closes_its_energy_budget() {
 
 #[test]
 fn contacts_with_one_restitution_lose_what_moreaus_theorem_says() {
-    // Frictionless, without cohesion and gravity, u^n − u^{n−1} = W P and P ⟂ v̄ give the work
-    // ½P·(u^n + u^{n−1}) = P·v̄ − ½ (1−ρ)/(1+ρ) P·WP, and P·WP = Σ m |v^n − v^{n−1}|²: kinetic
-    // energy never grows, falls by just that share, and stays for ρ = 1.
+    // Without friction, cohesion and gravity, u^n − u^{n−1} = W P and P ⟂ v̄ give the work ½P·(u^n + u^{n−1}) = P·v̄
+    // − ½ (1−ρ)/(1+ρ) P·WP, and P·WP = Σ m |v^n − v^{n−1}|²: kinetic energy never grows, falls by exactly that
+    // amount, and is constant for ρ = 1.
     for restitution in [0.0, 0.3, 0.7, 1.0] {
         let mut scene = cluster(SMOOTH, 0.0, restitution, 0.0);
         scene.solver = tight();
-        // A gap that closes within the touch tolerance is no shock.
+        // Closing a gap within the touch tolerance is not a shock.
         scene.parameters.touch_tolerance = 0.0;
         let mut run = start(&scene);
         let (mut shocks, mut most_contacts) = (0, 0);

@@ -1,9 +1,8 @@
-//! The paper's cradle (§4): which time steps lose the bond between i and j; and chains that hang by their cohesion.
+//! The paper's cradle (§4): time steps that lose the bond between i and j. Also: chains that hang by their cohesion.
 
 use crate::common::*;
 
-/// True if i and j are apart by more than 0.1 d after 2.5 s: the latest shock of a start at 8.5 d
-/// comes at √(2·7.5 d/g) = 1.5 s.
+/// True if i and j are more than 0.1 d apart after 2.5 s: the latest shock, from 8.5 d, comes at √(2·7.5 d/g) = 1.5 s.
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;
     let run = after(&scene, (2.5 / dt).round() as usize);
@@ -50,7 +49,7 @@ fn after_a_shock_solved_well_i_and_j_move_together() {
     assert!(relative(&run).abs() < 1e-9, "v_ij = {:e}", relative(&run));
 }
 
-/// The share of bonds lost over 100 starts between 6 and 8.5 d.
+/// The fraction of bonds lost over 100 initial heights between 6 and 8.5 d.
 fn share_lost(dt: f64, tolerance: f64) -> f64 {
     let lost = (0..100).filter(|&k| {
         let mut scene = cradle_from(6.0 + 2.5 * (f64::from(k) + 0.5) / 100.0);
@@ -63,8 +62,8 @@ fn share_lost(dt: f64, tolerance: f64) -> f64 {
 
 #[test]
 fn the_share_of_lost_bonds_grows_with_the_time_step() {
-    // The last number is the share over 5,000 starts (0.51, 0.86; 0.51, 0.79) or, with the preset's
-    // stop, that of another implementation over 500 starts (0.52, 0.85).
+    // The expected fractions are those over 5,000 initial heights (0.51, 0.86; 0.51, 0.79) or, with the preset's stop
+    // test, those of another implementation over 500 (0.52, 0.85).
     for (dt, tolerance, expected, of) in [
         (4e-3, 2.2e-3, 0.52, 500.0),
         (1e-2, 2.2e-3, 0.85, 500.0),
@@ -72,7 +71,7 @@ fn the_share_of_lost_bonds_grows_with_the_time_step() {
         (1e-2, 1e-6, 0.79, 5000.0),
     ] {
         let share = share_lost(dt, tolerance);
-        // 95 % of two samples, of 100 here and of so many there, differ by less than this.
+        // In 95 % of cases two samples, of 100 here and of `of` there, differ by less than this.
         let variance = expected * (1.0 - expected) * (1.0 / 100.0 + 1.0 / of);
         let allowed = 1.96 * f64::sqrt(variance);
         assert!((share - expected).abs() < allowed, "Δt {dt}, stop {tolerance:e}: lost {share}");
@@ -81,25 +80,25 @@ fn the_share_of_lost_bonds_grows_with_the_time_step() {
 
 #[test]
 fn no_bond_is_lost_where_the_residual_opens_less_than_the_gap_tolerance() {
-    // The stop of 1e-6 m/s above leaves up to 1e-6 m/s × Δt a step, more than the tolerance of
-    // 1e-9 m: the contact is gone and its cohesion with it. Once what a step leaves is below the
-    // tolerance, i and j still touch in the next one, at every Δt.
+    // The stop test of 1e-6 m/s above leaves up to 1e-6 m/s × Δt per step, more than the tolerance of 1e-9 m, so the
+    // contact and its cohesion are lost. If the error of a step is below the tolerance, i and j still touch in the
+    // next step, at every Δt.
     for dt in [1e-3, 4e-3, 6e-3, 1e-2] {
         assert_eq!(share_lost(dt, 1e-10), 0.0, "Δt {dt}");
     }
 }
 
 const RADIUS: f64 = 0.05;
-/// Overlap of neighbours, m: rounding of the places, and no more than that.
+/// Overlap of neighbours, m: only the rounding of the positions.
 const OVERLAP: f64 = 1e-12;
 const TIME_STEPS: [f64; 4] = [1e-5, 1e-4, 1e-3, 5e-3];
 
-// With m the mass of a disc, the contact with the fixed disc has C₀ = Bond·m·g and carries n·m·g; the contact under the
-// k-th disc has C₀ = Bond·(m/2)·g and carries (n − k)·m·g. So a chain holds while n < Bond and n − 1 < Bond/2: a single
-// disc falls off the ceiling at Bond = 1, and a chain of three or more breaks under its first disc, at Bond = 2(n − 1).
-// With two discs both contacts reach their limits together, at Bond = 2.
+// Let m be the mass of a disc. The contact with the fixed disc has C₀ = Bond·m·g and carries n·m·g. The contact under
+// the k-th disc has C₀ = Bond·(m/2)·g and carries (n − k)·m·g. So a chain holds if n < Bond and n − 1 < Bond/2: a
+// single disc falls at Bond = 1, and a chain of three or more breaks under its first disc at Bond = 2(n − 1). With
+// two discs both contacts reach their limits together, at Bond = 2.
 
-/// n discs below a fixed one. The line lies along gravity: `down` is x on one axis.
+/// n discs below a fixed disc, in a line along gravity: `down` is x on one axis.
 fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {
     let down = if physics.axes == 1 { DVec2::X } else { -DVec2::Y };
     let place = |k: usize| k as f64 * (2.0 * RADIUS - OVERLAP) * down;
@@ -129,8 +128,7 @@ fn a_chain_holds_while_no_contact_carries_more_than_its_cohesion() {
         assert_eq!(run.observables().contacts, n as u32, "Δt {dt}, n {n}");
         let mass = run.grains().masses[0];
         for (contact, impulse) in run.contacts().contacts().iter().zip(run.contacts().impulses()) {
-            // Grain indices rise downward; a contact's lower disc is the one whose number
-            // is larger, or the only one.
+            // Grain indices increase downward. The lower disc of a contact has the larger index, or is the only grain.
             let lower = if contact.other as usize >= n { 0 } else { contact.other };
             let weight = (n - lower as usize) as f64 * mass * G;
             let force = impulse.normal / dt;
@@ -155,7 +153,7 @@ fn a_chain_breaks_above_its_threshold_where_it_is_overloaded() {
                 run.step().expect("a finite state");
                 assert!(run.observables().converged);
                 assert_eq!(run.observables().contacts, n as u32, "all touch at first");
-                // NEAR·g opens the overlap within a step or some at each of these time steps.
+                // At each of these time steps NEAR·g opens the overlap within a few steps.
                 let mut steps = 0;
                 while run.observables().contacts == n as u32 {
                     run.step().expect("a finite state");

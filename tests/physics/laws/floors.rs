@@ -1,4 +1,4 @@
-//! A floor may be made of pieces that adjoin: a disc that slides or rolls over it does not feel where they meet.
+//! Floors made of adjoining pieces: a disc that slides or rolls over the floor does not feel the seams.
 
 use crate::common::*;
 
@@ -73,7 +73,7 @@ fn a_disc_does_not_feel_where_the_pieces_of_a_floor_meet() {
     }
 }
 
-/// Pieces that move apart are steps; those that go together are a floor.
+/// Pieces that move apart form a step; pieces that move together are one floor.
 #[test]
 fn a_seam_is_where_pieces_go_together() {
     let run_over = |second: MotionCourse| {
@@ -94,7 +94,7 @@ fn a_seam_is_where_pieces_go_together() {
     assert!(lifted.distance(DVec2::new(2.0, 0.1)) < 1e-6, "{lifted}");
 }
 
-/// A hand that draws a piece away opens the seam, and letting go of it where it adjoins closes it.
+/// Drawing a piece away by hand opens the seam, and releasing it at the other piece closes the seam.
 #[test]
 fn a_hand_opens_and_closes_a_seam() {
     let grain = moving(DVec2::new(0.3, RADIUS), RADIUS, 2.0 * DVec2::X);

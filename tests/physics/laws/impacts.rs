@@ -1,5 +1,5 @@
-//! Shocks through touching grains, one after the other, and those of walls that move along their normal: what is known
-//! exactly, and what always holds.
+//! Shocks that run through touching grains one after the other, and shocks of walls that move along their normal:
+//! exact results and general properties.
 
 use proptest::prelude::*;
 use slump::scene::stability::{bounce, heap};
@@ -75,7 +75,7 @@ fn balls_from_both_ends_change_places() {
 
 #[test]
 fn each_ball_hands_on_the_share_that_a_pair_does() {
-    // A pair hands on (1 + ρ)/2; with these ρ nothing catches up with the last ball afterwards.
+    // A pair transmits (1 + ρ)/2. With these ρ no ball catches up with the last one afterwards.
     for (restitution, count) in [(0.95, 3), (0.9, 5), (0.99, 8)] {
         let velocities: Vec<f64> =
             (0..count).map(|ball| if ball == 0 { SPEED } else { 0.0 }).collect();
@@ -87,7 +87,7 @@ fn each_ball_hands_on_the_share_that_a_pair_does() {
     }
 }
 
-/// Fifteen balls in a triangle about the x axis and one that strikes its apex; `order` numbers them.
+/// Fifteen balls in a triangle about the x axis and one that strikes its apex. `order` gives their numbers.
 fn rack(restitution: f64, order: &[usize]) -> Scene {
     let spacing = 2.0 * RADIUS * (1.0 - TOUCH);
     let mut grains = vec![moving(-spacing * DVec2::X, RADIUS, SPEED * DVec2::X)];
@@ -140,7 +140,7 @@ fn a_break_shot_is_symmetric_and_does_not_depend_on_the_numbering() {
     }
 }
 
-/// Discs of unequal size on a lattice that about touch, with velocities at random.
+/// Discs of unequal size on a lattice, nearly touching, with random velocities.
 fn crowd(restitution: f64, count: usize, seed: u64) -> Scene {
     let mut random = random(seed);
     let columns = (count as f64).sqrt().ceil() as usize;
@@ -205,14 +205,13 @@ fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
     scene.parameters.friction = 0.5;
     let point = -RADIUS * (1.0 - TOUCH) * DVec2::X;
     scene.boundaries = vec![piston(point, DVec2::X, SPEED, 1.0)];
-    // The first ball hands its 2V on to the second, and is struck once more.
+    // The first ball transmits its 2V to the second and is struck again.
     for velocity in after_a_step(&scene, DVec2::X) {
         assert_close(velocity, 2.0 * SPEED, 1e-9, "a ball in front of the wall");
     }
 }
 
-/// Steps a scene with and without the remedy. The largest difference of velocities, over the largest
-/// velocity.
+/// Largest difference of velocities between runs with and without the remedy, over the largest velocity.
 fn difference(scene: &Scene, steps: usize) -> f64 {
     let mut runs = [false, true].map(|sequential_impacts| {
         let mut scene = scene.clone();
@@ -267,7 +266,7 @@ fn a_pile_whose_shocks_are_followed_closes_its_energy_budget() {
 const DT: f64 = 1e-3;
 const WALL_SPEED: f64 = 0.2;
 
-/// A wall along the y axis that comes from the left, from `distance` before the disc at the origin.
+/// A wall along the y axis that moves from `distance` on the left towards the disc at the origin.
 fn pushed(physics: Physics, restitution: f64, distance: f64, travel: f64) -> Scene {
     let grains = vec![Grain::at_rest(DVec2::ZERO, RADIUS)];
     let point = DVec2::new(-RADIUS - distance, 0.0);
@@ -287,7 +286,7 @@ fn wall(run: &Simulation) -> f64 {
 #[test]
 fn a_wall_hits_a_disc_at_rest_as_a_moving_disc_hits_a_wall() {
     for (physics, restitution) in pairs([LINE, Physics::FULL], [0.0, 0.5, 1.0]) {
-        // From further than any list of near pairs reaches.
+        // The wall begins outside the reach of any list of near pairs.
         let run = after(&pushed(physics, restitution, 20.0 * RADIUS, 10.0), 10_000);
         let expected = (1.0 + restitution) * WALL_SPEED;
         let speed = run.velocity(0).x;
@@ -361,8 +360,8 @@ fn a_wall_that_cannot_be_is_refused_with_its_field() {
     }
 }
 
-/// Each shock runs through the row and leaves its last ball not yet struck with 2V; in the end no
-/// contact closes, and every ball has it.
+/// Each shock runs through the row and gives 2V to the last ball that has not been struck. In the end no contact
+/// closes, and every ball has 2V.
 #[test]
 fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
     for balls in 1..=4 {
@@ -370,7 +369,7 @@ fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
         let mut scene = pushed(LINE, 1.0, 0.0, 10.0);
         let row = (0..balls).map(|ball| Grain::at_rest(place(ball), RADIUS));
         scene.grains = row.collect();
-        // Wherever rounding has put the last digit, they touch.
+        // The balls touch even if rounding opens their gaps.
         scene.gap_tolerance = 1e-9;
         scene.remedies = Remedies { sequential_impacts: true, ..Remedies::default() };
         let run = after(&scene, 1);

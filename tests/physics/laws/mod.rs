@@ -1,4 +1,4 @@
-//! The laws of contact on few bodies and small piles, held against exact motion.
+//! The contact laws on few bodies and small piles, against exact motion.
 
 mod cohesion;
 mod conservation;

@@ -1,5 +1,5 @@
-//! What runs tell: contacts against what is known of them, steps that stall, residuals; and what small piles show of the
-//! paper's §3.
+//! Reported moments: contacts against exact results, ages, unsolved steps and residuals. Also: effects of the paper's
+//! §3 in small piles.
 
 use rayon::prelude::*;
 
@@ -7,10 +7,10 @@ use crate::common::*;
 use crate::program::*;
 
 const RADIUS: f64 = 2e-3;
-/// What discs lie deep in the floor, m, so that they touch it: at a gap of exactly 0 they do not.
+/// Depth of discs in the floor, m. At a gap of exactly 0 they would not touch.
 const DEPTH: f64 = 1e-10;
 
-/// A disc on a floor, with gravity turned by an angle (rad) instead of the floor.
+/// A disc on a floor under gravity inclined by an angle (rad).
 fn disc_on_floor(angle: f64, bond: f64, friction: f64, cone: FrictionCone) -> Simulation {
     let mut scene = scene_of(&[DVec2::new(0.0, RADIUS - DEPTH)], angle);
     scene.parameters.bond = bond;
@@ -38,7 +38,7 @@ fn only_contact(moment: &Moment) -> ContactState {
 
 #[test]
 fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
-    // A rolling disc needs T = ⅓ m g sin α: it slips where that is more than μ times the bound of the cone.
+    // A rolling disc needs T = ⅓ m g sin α. It slips if that is more than μ times the normal force that the cone uses.
     let (angle, friction) = (0.5f64, 0.1);
     let needed = angle.sin() / 3.0;
     let cases = [
@@ -70,7 +70,7 @@ fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
 
 #[test]
 fn a_disc_that_is_pulled_off_opens_at_its_cohesion() {
-    // Gravity upwards: half of the weight is less than it takes to hold a disc, twice is more.
+    // Gravity points upwards. Half of the weight does not hold the disc, twice the weight does.
     for (bond, status) in [(0.5, ContactStatus::Open), (2.0, ContactStatus::Slip)] {
         let mut run = disc_on_floor(std::f64::consts::PI, bond, 0.0, FrictionCone::Shifted);
         run.step().expect("a finite step");
@@ -84,14 +84,14 @@ fn a_disc_that_is_pulled_off_opens_at_its_cohesion() {
 
 #[test]
 fn a_contact_is_as_old_as_it_has_lasted() {
-    // One disc rests, the other falls on the floor beside it from a height that takes some steps.
+    // One disc rests; the other falls onto the floor beside it within several steps.
     let height = 1.5 * RADIUS;
     let centres = [DVec2::new(0.0, RADIUS - DEPTH), DVec2::new(6.0 * RADIUS, RADIUS + height)];
     for stepper in Stepper::ALL.iter().copied() {
         let mut scene = scene_of(&centres, 0.0);
         scene.stepper = stepper;
         let mut run = start(&scene);
-        // What lies there at the start was found then.
+        // The contact of the resting disc is detected at the start.
         let mut touches = [Some(0), None];
         assert_eq!(only_contact(&run.moment()).age_steps, 0, "{stepper}");
         for step in 1..=60u64 {
@@ -124,7 +124,7 @@ fn grains_and_contacts_are_those_of_the_simulation() {
         assert_eq!(state.normal_force, view.normal_force);
         let on_grain = matches!(state.other, OtherBody::Grain(_));
         assert_eq!(on_grain, view.other_grain.is_some());
-        // A view's ends are where the grains are now; forces go with where the step began.
+        // A view shows the positions at the end of the step; forces belong to the positions at its beginning.
         assert!(state.branch.distance(view.from - view.to) <= reach, "{state:?} {view:?}");
     }
     assert!(moment.contacts.iter().any(|contact| contact.status == ContactStatus::Slip));
@@ -181,7 +181,7 @@ fn a_method_never_converges_to_a_residual_that_is_not_finite_and_a_scheme_always
             let is_finite = seen.residual.is_finite();
             let is_scheme = !stepper.uses_method();
             assert!(is_finite || seen.converged == is_scheme, "{stepper} {method}: {seen:?}");
-            // Nothing moves at first: what rounding leaves over is no residual.
+            // Nothing moves at first, and rounding errors are not a residual.
             assert!(is_finite || is_scheme, "{stepper} {method}: {seen:?}");
         }
     }
@@ -202,14 +202,14 @@ fn a_run_ends_where_no_number_holds_its_energy() {
     }
 }
 
-// Piles are chaotic, so single slumps move by some hundredths with anything. Each claim is one of the mean of paired
+// Piles are chaotic: any change shifts single slumps by some hundredths. Each claim is about the mean of paired
 // differences over the initial states, with Student's 95 % interval.
 
 const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
-/// Initial states, and Student's t for 95 % and one degree of freedom less.
+/// Number of initial states, and Student's t for 95 % with one degree of freedom less.
 const STATES: u64 = 8;
 const STUDENT_T: f64 = 2.365;
-/// The collapse of a pile of this size has ended by then, s.
+/// Duration after which the collapse of a pile of this size has ended, s.
 const DURATION_SECS: f64 = 0.4;
 
 fn states() -> Vec<Vec<Grain>> {

@@ -1,11 +1,11 @@
-//! A pyramid of logs for which forces exist that hold it: it stands where the touch tolerance keeps its contacts.
+//! A pyramid of logs for which equilibrium forces exist: it stands if the touch tolerance preserves its contacts.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.05;
 const ROWS_OF_LOGS: u32 = 6;
 
-/// 21 logs on a floor with μ = 1.7. Their gaps are some 1e-7 d, with both signs, and the tolerance is in m.
+/// 21 logs on a floor with μ = 1.7. Their gaps are about 1e-7 d, of both signs. The tolerance is in m.
 ///
 /// An equilibrium exists: linear programming finds forces within Coulomb's cones that carry all logs.
 fn pyramid(seed: u64, gap_tolerance: f64) -> Scene {
@@ -28,7 +28,7 @@ fn pyramid(seed: u64, gap_tolerance: f64) -> Scene {
     }
 }
 
-/// The way of the log that goes farthest in a second, d.
+/// Longest distance that a log moves in a second, d.
 fn farthest_way(scene: &Scene) -> f64 {
     let mut run = start(scene);
     let places = run.places().to_vec();
@@ -43,14 +43,14 @@ fn a_pyramid_in_equilibrium_stands_with_a_touch_tolerance() {
         let way = farthest_way(&pyramid(seed, tolerance));
         assert!(way < 1e-3, "start {seed}: a log went {way} d");
     }
-    // So it does by default, where contacts within the tolerance push at gap 0 alone.
+    // The pyramid also stands by default, with contacts within the tolerance that push only at gap 0.
     for seed in 0..12 {
         let mut scene = pyramid(seed, 0.0);
         scene.parameters.touch_tolerance = Parameters::default().touch_tolerance;
         let way = farthest_way(&scene);
         assert!(way < 1e-3, "start {seed}: a log went {way} d");
     }
-    // Without it contacts come and go by rounding, and the pyramid falls: the tolerance is what holds it.
+    // Without a tolerance, rounding opens and closes contacts and the pyramid falls.
     let way = farthest_way(&pyramid(0, 0.0));
     assert!(way > 0.05, "a log went {way} d");
 }

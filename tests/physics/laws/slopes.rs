@@ -1,10 +1,10 @@
-//! A disc on a slope: Coulomb's threshold, sliding, rolling, on every kind of fixed shape.
+//! A disc on a slope: Coulomb's threshold, sliding and rolling on every kind of fixed shape.
 //!
-//! The slope is a level shape under a gravity that leans by θ. Per mass, the disc is pressed on by
-//! g cosθ and drawn along by g sinθ. Without rotation it sticks up to tanθ = μ and then slides with
-//! g (sinθ − μ cosθ). With rotation it rolls without slip up to tanθ = 3μ, with ⅔ g sinθ of a solid
-//! disc, and above slides like the other while its spin grows with 2μ g cosθ / r. In the scheme all
-//! of these hold exactly in every step, whatever Δt: one contact is solved exactly by one update.
+//! The slope is a level shape under gravity inclined by θ. Per mass, g cosθ presses the disc on and g sinθ pulls it
+//! along. Without rotation it sticks up to tanθ = μ and then slides with g (sinθ − μ cosθ). With rotation it rolls
+//! without slip up to tanθ = 3μ, with ⅔ g sinθ for a solid disc. Above, it slides in the same way while its spin
+//! grows with 2μ g cosθ / r. In the scheme all of this is exact in every step and for every Δt, because one update
+//! solves one contact exactly.
 
 use crate::common::*;
 
@@ -12,7 +12,7 @@ const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
 const DT: f64 = 1e-3;
 
-/// A disc that touches the level y = 0 from above, under a gravity that leans by `slope` = tanθ.
+/// A disc that touches the level y = 0 from above, under gravity inclined by `slope` = tanθ.
 fn on_level(physics: Physics, slope: f64, mu: f64, boundary: Boundary) -> Scene {
     let grain = Grain::at_rest(DVec2::new(0.0, RADIUS * (1.0 - 1e-10)), RADIUS);
     let gravity = G * DVec2::new(slope, -1.0).normalize();
@@ -56,7 +56,7 @@ fn a_disc_that_cannot_roll_slides_above_coulombs_threshold_and_not_below() {
             let (along, onto) = acceleration(slope);
             let velocity = sliding.velocity(0);
             let expected = (along - MU * onto) * DT * 500.0;
-            // At 1e-6 above the threshold, roundings of μ g cosθ are 1e-9 of the difference.
+            // At 1e-6 above the threshold, rounding errors of μ g cosθ are 1e-9 of the difference.
             assert_close(velocity.x, expected, 1e-8, name);
             assert!(velocity.y.abs() < 1e-12, "{name}: stays on its level");
             assert_eq!(sliding.grains().angular_velocities[0], 0.0);
@@ -66,7 +66,7 @@ fn a_disc_that_cannot_roll_slides_above_coulombs_threshold_and_not_below() {
 
 #[test]
 fn cohesion_steepens_the_threshold_with_the_shifted_cone_alone() {
-    // |T| ≤ μ(N + C₀) with C₀ = Bond·m·g: sticks where sinθ ≤ μ (cosθ + Bond).
+    // |T| ≤ μ(N + C₀) with C₀ = Bond·m·g: the disc sticks if sinθ ≤ μ (cosθ + Bond).
     let (bond, level) = (0.8, levels().remove(0).1);
     let moves = |slope: f64, cone: FrictionCone| {
         let mut scene = on_level(UNTURNING, slope, MU, level.clone());
@@ -126,8 +126,8 @@ fn a_vertex_of_a_nearly_flat_polyline_is_not_felt() {
 
 #[test]
 fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
-    // Rolling without slip from rest at angle α off the top, energy gives ¾v² = g R (cosα − cosφ)
-    // with R the distance of the centres, and N = m (g cosφ − v²/R) vanishes at cosφ = 4/7 cosα.
+    // For rolling without slip from rest at angle α from the top, energy gives ¾v² = g R (cosα − cosφ), where R is
+    // the distance of the centres. N = m (g cosφ − v²/R) vanishes at cosφ = 4/7 cosα.
     let (other, start_angle) = (0.4, 0.2f64);
     let leaving_cosine = |dt: f64| {
         let reach = other + RADIUS;
@@ -150,14 +150,14 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
     };
     let ideal = 4.0 / 7.0 * start_angle.cos();
     for dt in [1e-3, 1e-4] {
-        // Where N vanishes the two curves part slowly, so a late touch is easy: the last one is
-        // late by about √Δt (measured 0.75 and 0.98 of it).
+        // Near N = 0 the two curves separate slowly, so late contacts are likely: the last one is late by about √Δt
+        // (measured: 0.75 and 0.98 of it).
         let off = (leaving_cosine(dt) - ideal).abs();
         assert!(off < 1.2 * dt.sqrt(), "Δt {dt}: left at {off} off the ideal cosine");
     }
 }
 
-/// The disc on a half-space, with cohesion, by a scheme.
+/// A disc on a half-space, with cohesion, stepped by a scheme.
 fn on_slope(
     stepper: Stepper,
     physics: Physics,
@@ -170,7 +170,7 @@ fn on_slope(
     scene
 }
 
-/// Its velocity and its acceleration once it lies on the slope.
+/// Velocity and acceleration of the disc after it has settled on the slope.
 fn slides(scene: &Scene) -> (f64, f64) {
     let mut run = after(scene, 500);
     let velocity = run.velocity(0).x;
@@ -192,14 +192,14 @@ fn friction_keeps_to_coulombs_cone() {
             let (_, found) = slides(&on_slope(method, UNTURNING, slope, 0.0, shifted));
             assert_close(found, along, 1e-6, "how it slides");
         }
-        // A disc rolls up to tanθ = 3μ, with two thirds of g sinθ, and slides above.
+        // A disc rolls up to tanθ = 3μ with two thirds of g sinθ. Above, it slides.
         let slope: f64 = 0.8;
         let (_, found) = slides(&on_slope(method, Physics::FULL, slope, 0.0, shifted));
         assert_close(found, 2.0 / 3.0 * G * slope / slope.hypot(1.0), 1e-6, "how it rolls");
         let slope: f64 = 1.0;
         let (_, found) = slides(&on_slope(method, Physics::FULL, slope, 0.0, shifted));
         assert_close(found, G / slope.hypot(1.0) * (slope - mu), 1e-6, "how it slides and turns");
-        // Cohesion holds where sinθ ≤ μ (cosθ + Bond), with the shifted cone alone.
+        // With the shifted cone only, cohesion holds the disc if sinθ ≤ μ (cosθ + Bond).
         for (bond, sticks) in [(1.01, true), (0.99, false)] {
             let slope: f64 = 0.75;
             let bond = bond * (slope / mu - 1.0) / slope.hypot(1.0);

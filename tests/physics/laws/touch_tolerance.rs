@@ -1,14 +1,14 @@
-//! The touch tolerance: a contact pulls up to that gap, and grains push each other at gap 0 alone, within rounding.
+//! The touch tolerance is the gap up to which contacts pull. Grains push each other only at gap 0, within rounding.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.01;
 const DIAMETER: f64 = 2.0 * RADIUS;
 const BOND: f64 = 20.0;
-/// The gap that is rounding, in diameters.
+/// Rounding of gaps, in diameters.
 const ROUNDING: f64 = 1e-4;
 
-/// Two weightless discs with a gap, in diameters, whose distance grows with a speed.
+/// Two weightless discs with a gap, in diameters, that separate at a given speed.
 fn pair(tolerance: f64, gap: f64, opening: f64, dt: f64, restitution: f64) -> Scene {
     let place = (RADIUS + 0.5 * gap * DIAMETER) * DVec2::X;
     let grains = [-1.0, 1.0]
@@ -33,7 +33,7 @@ fn discs_that_come_from_within_the_tolerance_meet_at_gap_0() {
     for (dt, speed) in pairs([1e-3, 1e-4], [0.0, -1e-3, -0.1]) {
         let run = after(&pair(0.01, 0.005, speed, dt, 0.0), (0.1 / dt) as usize);
         assert!(gap(&run).abs() <= ROUNDING, "{dt} s, {speed} m/s: {} d", gap(&run));
-        // Without cohesion nothing brings slow ones there.
+        // Without cohesion, slow pairs do not reach gap 0.
         let mut loose = pair(0.01, 0.005, speed, dt, 0.0);
         loose.parameters.bond = 0.0;
         let run = after(&loose, (0.1 / dt) as usize);
@@ -52,8 +52,8 @@ fn discs_bounce_from_within_the_tolerance_as_from_the_surface() {
     }
 }
 
-/// What the pull gives a pair that comes, it takes when the pair leaves: without restitution's loss nothing is lost, except by pairs
-/// that come to the surface so slowly that they end a step there.
+/// A pair that leaves loses the energy that the pull gave it on approach. With ρ = 1 only pairs that reach the
+/// surface so slowly that they end a step there lose energy.
 #[test]
 fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     let (mut kept, mut lost) = (0, 0);
@@ -81,20 +81,20 @@ fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     assert!(kept > 100 && lost > 0, "{kept} leave with all of their speed, {lost} are caught");
 }
 
-/// ½ m_ij v² = C₀ (τ + what the pair opens within a step), and C₀ = Bond m_ij g.
+/// ½ m_ij v² = C₀ (τ + the opening within a step), and C₀ = Bond m_ij g.
 #[test]
 fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     for tolerance in [1e-3, 0.01, 0.1] {
         let escape = (2.0 * BOND * G * tolerance * DIAMETER).sqrt();
         for (part, whole) in [(0.97, true), (1.03, false)] {
-            // In steps within which it opens little.
+            // Steps within which the pair opens little.
             let dt = 1e-3 * tolerance * DIAMETER / escape;
             let run = after(&pair(tolerance, 0.0, part * escape, dt, 0.0), 5_000);
             let stays = gap(&run) < tolerance;
             assert_eq!(stays, whole, "{tolerance} d, {part} of the escape speed");
         }
     }
-    // In a long step one cohesion's push decides, whatever the tolerance is.
+    // In a long step the impulse of a single step decides, for every tolerance.
     let (dt, capture) = (1e-3, BOND * G * 1e-3);
     for (part, whole) in [(0.99, true), (1.01, false)] {
         let run = after(&pair(0.0, -1e-6, part * capture, dt, 0.0), 50);
@@ -102,8 +102,9 @@ fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     }
 }
 
-/// A pair opens by ½ω²Δt²d in a step. Where the bond has hardly more strength than the circle takes, the pull needs some steps to
-/// turn that round, in which the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), with the spin ω_b that the bond bears.
+/// A pair opens by ½ω²Δt²d in a step. If the bond is barely stronger than the circle requires, the pull needs some
+/// steps to reverse this. Meanwhile the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest spin that
+/// the bond can carry.
 #[test]
 fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     let break_up = (BOND * G / DIAMETER).sqrt();
@@ -135,7 +136,7 @@ fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     }
 }
 
-/// Numbers in a file are rounded, so that discs which are written as touching have gaps of some 1e-16 d, of either sign.
+/// Numbers in a file are rounded, so discs that are written as touching have gaps of about 1e-16 d, of either sign.
 #[test]
 fn discs_that_are_written_as_touching_are_bonded_by_default() {
     let mut random = random(9);

@@ -1,28 +1,27 @@
 //! One contact: the three cases of the paper's §2.2, and the force that pulls a contact open.
 //!
-//! With v = v^{n−1} the normal velocity at the beginning of a step, a the relative normal
-//! acceleration by external forces, c = C₀Δt/m_ij and λ = P/m_ij, the step asks (`contact::law`)
-//! 0 ≤ λ + c ⟂ u ≥ 0 with u = v^n + ρv and v^n = v + aΔt + λ. The force that gives v̄ = 0, that is
-//! u = 0, is A = −m_ij ((1 + ρ) v/Δt + a). So
+//! Let v = v^{n−1} be the normal velocity at the beginning of a step, a the relative normal acceleration by external
+//! forces, c = C₀Δt/m_ij and λ = P/m_ij. The step requires (`contact::law`) 0 ≤ λ + c ⟂ u ≥ 0 with u = v^n + ρv and
+//! v^n = v + aΔt + λ. The force that gives v̄ = 0, that is u = 0, is A = −m_ij ((1 + ρ) v/Δt + a). So
 //!
-//! * A ≥ −C₀: λ = AΔt/m_ij fulfils the law with u = 0, and v^n = −ρ v, whatever a is. For A > 0 the
-//!   contact pushes (a closing pair bounces), for A < 0 it pulls (an opening pair closes again);
+//! * A ≥ −C₀: λ = AΔt/m_ij fulfils the law with u = 0, and v^n = −ρ v for any a. For A > 0 the contact pushes (a
+//!   closing pair bounces), for A < 0 it pulls (an opening pair closes again);
 //! * A < −C₀: λ = −c, and v^n = v + aΔt − C₀Δt/m_ij: the contact opens (u > 0).
 
 use crate::common::*;
 
-/// What a contact between i and another body, with normal `direction`, starts from.
+/// Initial state of a contact between i and another body, with normal `direction`.
 #[derive(Clone)]
 struct Case {
     parameters: Parameters,
     velocity: f64,
-    /// True if gravity presses the pair together, pulls it apart, or does not act.
+    /// Sign of gravity: positive presses the pair together, negative pulls it apart, 0 is no gravity.
     pressing: f64,
 }
 
 const RADIUS: f64 = 0.15;
 const OTHER_RADIUS: f64 = 0.1;
-/// Of a diameter: enough for a contact, too little for anything else.
+/// Overlap in diameters: enough for a contact, too small for any other effect.
 const OVERLAP: f64 = 1e-9;
 
 fn cases() -> Vec<Case> {
@@ -38,7 +37,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// i touches a fixed disc from the side `direction` points to.
+/// i touches a fixed disc on the side to which `direction` points.
 fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let place = (RADIUS + OTHER_RADIUS - OVERLAP) * direction;
     let mut grain = moving(place, RADIUS, case.velocity * direction);
@@ -46,14 +45,13 @@ fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let gravity = if case.pressing == 0.0 { -G } else { -G * case.pressing } * direction;
     Scene {
         fixed_discs: vec![fixed(DVec2::ZERO, OTHER_RADIUS)],
-        // One update solves one contact. More would add up roundings in P that are too small to
-        // move the bodies.
+        // One update solves one contact. More would add rounding errors to P that are too small to move the bodies.
         solver: SolverSettings { max_sweeps: 1, ..tight() },
         ..scene(physics, gravity, case.parameters, vec![grain])
     }
 }
 
-/// i touches j, which is free, moves along, and feels no gravity.
+/// i touches the free, moving, weightless disc j.
 fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let mut scene = against_fixed(case, physics, direction);
     let drift = 0.3 * direction;
@@ -63,7 +61,7 @@ fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     scene
 }
 
-/// Takes one step and compares v^n and P with the three cases; tells which case it was.
+/// Takes one step, compares v^n and P with the three cases, and returns the case.
 fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
     let mut run = start(scene);
     run.step().expect("a finite state");
@@ -86,7 +84,7 @@ fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
     } else {
         (case.velocity + acceleration * dt - dt * cohesion_force / mass, -cohesion_force)
     };
-    // Velocities are formed from terms as large as these.
+    // Velocities are sums of terms of this size.
     let scale = case.velocity.abs() + 0.3 + G * dt + dt * cohesion_force / mass;
     let off = (found - velocity).abs();
     assert!(off <= 1e-12 * scale, "A = {force}: v^n is {found}, not {velocity}");
@@ -104,7 +102,7 @@ fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
 
 #[test]
 fn one_contact_bounces_closes_again_or_opens_as_in_section_2_2() {
-    // Along an axis the tangential velocity is exactly 0, so that friction and rotation change nothing head on.
+    // Along an axis the tangential velocity is exactly 0, so friction and rotation do not affect a head-on shock.
     for (physics, direction) in [
         (LINE, DVec2::X),
         (LINE, -DVec2::X),
@@ -126,11 +124,10 @@ fn one_contact_bounces_closes_again_or_opens_as_in_section_2_2() {
     }
 }
 
-/// Time steps over which the pull-off force must not change, s.
+/// Time steps for which the pull-off force must be equal, s.
 const TIME_STEPS: [f64; 7] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 5e-3];
 
-/// Gravity pulls i off another body. The pull is m_ij g, C₀ is Bond·m_ij·g: the threshold is
-/// Bond = 1.
+/// Gravity pulls i off another body. The pull is m_ij g and C₀ is Bond·m_ij·g, so the threshold is Bond = 1.
 fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
     let parameters = Parameters { touch_tolerance: 0.0, ..parameters(bond, dt, 0.2, 0.5) };
     let case = Case { parameters, velocity: 0.0, pressing: -1.0 };
@@ -164,7 +161,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
         opening.step().expect("a finite state");
         let speed = relative(&opening).length();
         assert_close(speed, 1e-6 * G * dt, 1e-8, "the speed it opens with");
-        // The overlap is gone after √(2·OVERLAP / 1e-6 g) at the latest.
+        // The overlap is gone after at most √(2·OVERLAP / 1e-6 g).
         let mut steps = 0.02 / dt;
         while opening.observables().contacts > 0 && steps > 0.0 {
             opening.step().expect("a finite state");
@@ -178,7 +175,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
 fn a_corner_of_a_polyline_holds_no_more_than_one_contact() {
     for (bond, holds) in [(1.0 + 1e-6, true), (1.0 - 1e-6, false)] {
         let mut scene = pulled(bond, 1e-3, Physics::FULL, false);
-        // The disc hangs under the corner in the middle, where two segments meet.
+        // The disc hangs under the middle corner, at which two segments meet.
         let points = vec![DVec2::new(-1.0, 0.5), DVec2::ZERO, DVec2::new(1.0, 0.3)];
         scene.fixed_discs.clear();
         scene.boundaries = vec![Boundary::Polyline { points }];
@@ -205,7 +202,7 @@ fn drop(physics: Physics, up: DVec2, restitution: f64, bond: f64) -> Scene {
     }
 }
 
-/// Speeds (before, after) of each of the first `count` shocks, and the highest point after each.
+/// Speeds (before, after) of the first `count` shocks, and the highest point after each.
 fn bounces(scene: &Scene, up: DVec2, count: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let mut run = start(scene);
     let (mut shocks, mut heights) = (Vec::new(), Vec::new());
@@ -243,8 +240,8 @@ fn each_bounce_keeps_the_fraction_rho_of_the_speed() {
             let mut ideal = HEIGHT;
             for (bounce, height) in heights.into_iter().enumerate() {
                 ideal *= restitution * restitution;
-                // A shock comes up to one step late, at the wrong height by up to speed × Δt, and
-                // leaves gravity out for that step: two times speed × Δt a bounce at the most.
+                // A shock is up to one step late, so its height is wrong by up to speed × Δt, and it omits gravity
+                // for that step: at most two times speed × Δt per bounce.
                 let allowed = 2.0 * (bounce + 1) as f64 * (2.0 * G * HEIGHT).sqrt() * DT;
                 let off = (height - ideal).abs();
                 assert!(off <= allowed, "ρ {restitution}, bounce {bounce}: {height} for {ideal}");
@@ -267,7 +264,7 @@ fn without_restitution_the_first_shock_is_the_last() {
             }
         }
         assert!(shocked);
-        // It lies as deep as one step of the fall took it.
+        // The disc lies as deep as one step of its fall.
         let depth = run.observables().max_overlap * run.world().mean_diameter;
         assert!(depth > 0.0 && depth <= 1.01 * (2.0 * G * HEIGHT).sqrt() * DT);
     }
@@ -275,13 +272,13 @@ fn without_restitution_the_first_shock_is_the_last() {
 
 #[test]
 fn cohesion_holds_what_bounces_slower_than_the_capture_speed() {
-    // The shock itself is the same (A > 0); the step after it pulls back Bond·g·Δt, and where that
-    // is more than (1 + ρ) times the speed, the contact closes again.
+    // The shock itself is equal (A > 0). The next step pulls back by Bond·g·Δt; if that is more than (1 + ρ) times
+    // the speed, the contact closes again.
     let (restitution, speed) = (0.5, (2.0 * G * HEIGHT).sqrt());
     for (times, escapes) in [(0.8, true), (1.2, false)] {
         let bond = times * (1.0 + restitution) * restitution * speed / (G * DT);
         let mut scene = drop(LINE, DVec2::X, restitution, bond);
-        // Deep enough to touch still after the shock.
+        // Deep enough for the contact to persist after the shock.
         scene.grains[0].position.x = BALL_RADIUS - speed * DT;
         scene.grains[0].velocity.x = -speed;
         let mut run = start(&scene);

@@ -1,5 +1,5 @@
-//! Gravity that turns by itself or is tilted by hand: what falls, what slides, and that a tilted world is the one whose
-//! gravity is listed so.
+//! Gravity that turns by itself or is tilted by hand: falling and sliding, and that a tilted scene equals a scene
+//! whose gravity is written that way.
 
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
@@ -29,7 +29,7 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
         let angle = RATE * 2000.0 * DT;
         let expected = G / RATE * DVec2::new(1.0 - angle.cos(), -angle.sin());
         let grains = run.grains();
-        // The middle of a step stands for the step: (ΩΔt)²/24.
+        // A step uses gravity at its middle: error (ΩΔt)²/24.
         assert!(grains.velocities[0].distance(expected) < 2e-7, "{stepper}");
         let energy = 0.5 * grains.masses[0] * grains.velocities[0].length_squared();
         assert_close(work, energy, 1e-12, stepper.name());
@@ -38,7 +38,7 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
     }
 }
 
-/// Through a table of angles: a level is tilted to tan θ just below μ and then just above.
+/// A table of angles tilts a level to tan θ just below μ and then just above.
 #[test]
 fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
     let mu: f64 = 0.3;
@@ -64,13 +64,13 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
             "{what}: {speed}"
         );
         take_steps(&mut run, 1100);
-        // g (sin θ − μ cos θ) since tan θ = μ, at 0.65 s: evenly rising until 0.7 s.
+        // The acceleration g (sin θ − μ cos θ) is 0 at tan θ = μ, at 0.65 s, and then rises evenly until 0.7 s.
         let push = G * (above.sin() - mu * above.cos());
         assert_close(run.velocity(0).x, push * (1.0 + 0.025), 5e-3, &what);
     }
 }
 
-/// What rests, falls and is bonded, on a floor.
+/// Grains that rest, fall and are bonded, on a floor.
 fn on_a_floor() -> Scene {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];
@@ -134,7 +134,7 @@ fn a_run_that_is_tilted_on_the_way_goes_on_from_its_file_bit_for_bit() {
             take_steps(run, 10);
         }
         assert_eq!(bits(&simulation), bits(&again));
-        // A new start from there has the scene's own turn, and the tilt as a setting.
+        // An initial state made from here has the scene's own turn, and the tilt as a setting.
         let start = read.as_start();
         assert_eq!(start.parameters.tilt, -12.5);
         assert_eq!(start.gravity, read.scene.gravity);

@@ -1,12 +1,13 @@
-//! What holds of cells whose borders wrap, at the sides or all round, and of those that shear: pairs across borders are
-//! pairs like others, momentum stays, measures do not hang on where the borders are, and files know of them.
+//! Cells with borders that wrap, at the sides or all round, and that shear: pairs across borders are like other
+//! pairs, momentum is conserved, measures do not depend on the position of the borders, and files store the cell.
 
 use super::periodic::{SIDE, SQUARE, falling, sliding};
 use super::sheared::{SIZE, cell, gas as sheared_gas, ways};
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
 
-/// Discs of one or of very different sizes, between a floor and a ceiling that do not rub, or without bounds.
+/// Discs of nearly equal or very different sizes between a frictionless floor and ceiling, or in a cell that is
+/// periodic all round.
 pub(super) fn gas(small: f64, all_round: bool) -> Scene {
     let mut random = random(5);
     let (spacing, fall) = if all_round { (1.2, 0.3) } else { (1.1, 0.0) };
@@ -107,7 +108,7 @@ fn every_pair_in_touch_is_found_across_borders_and_none_twice() {
     }
 }
 
-/// The velocity of the second disc as the first sees it, of the image that is nearest, m/s.
+/// Velocity of the nearest image of the second disc relative to the first, m/s.
 fn seen(run: &Simulation) -> DVec2 {
     let cell = run.world().periodic.expect("a cell");
     let above = ((run.place(0).y - run.place(1).y) / SIZE.y).round();
@@ -193,7 +194,7 @@ fn runs_go_on_from_a_file_bit_for_bit_across_crossings() {
     assert_eq!(after(&still, 600).observables().lost_grains, 0, "nothing moves by itself");
 }
 
-/// What is measured of a run whose discs are all moved by the same way.
+/// Measures of a run after all discs have been moved by the same vector.
 fn moved(run: &Simulation, by: DVec2) -> MomentMeasures {
     let (mut moment, cell) = (run.moment(), run.world().periodic.expect("a cell"));
     moment.grains.iter_mut().for_each(|grain| grain.position = cell.wrap(grain.position + by));

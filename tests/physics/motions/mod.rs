@@ -1,5 +1,5 @@
-//! Bodies that move by themselves, and gravity that turns: what their surfaces do to grains, that nothing depends on who moves, and that
-//! energy, momentum, restart and mirror know of it.
+//! Bodies that move by themselves, and gravity that turns: the effect of their surfaces on grains, independence of
+//! the frame of reference, and their part in energy, momentum, restart and mirror images.
 
 mod driven;
 mod gravity;
@@ -14,14 +14,14 @@ mod views;
 use crate::common::*;
 use slump::config::{SavedState, scene_to_toml};
 
-/// A run as its file keeps it.
+/// A run, saved and read again.
 fn saved_and_read(scene: &Scene, run: &Simulation) -> SavedState {
     let state = SavedState::new(scene.clone(), run.clone(), Tally::default());
     let bytes = state.to_bytes().expect("bytes");
     SavedState::from_bytes(&bytes, "a.slump").expect("a state")
 }
 
-/// The scene as its own file says it.
+/// The scene, written to its own file format and read again.
 fn through_a_file(scene: &Scene) -> Scene {
     let text = scene_to_toml(scene).expect("TOML");
     let read: Scene = toml::from_str(&text).expect("a scene");

@@ -1,4 +1,4 @@
-//! Borders that wrap at the sides, below and above, or both: nothing depends on where they are.
+//! Borders that wrap at the sides, below and above, or both: nothing depends on their position.
 
 use super::images::gas;
 use super::through_a_file;
@@ -15,7 +15,7 @@ pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Sce
     scene
 }
 
-/// Longest distance, m, of a grain in a run from where the same one is in another that was moved by `shift`.
+/// Longest distance, m, between a grain of one run and the same grain of a run that was moved by `shift`.
 fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     let cell = one.world().periodic.or(other.world().periodic).expect("a cell");
     let [one, other] = [one, other].map(|run| run.places());
@@ -23,7 +23,7 @@ fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     ways.map(|way| cell.shortest(way).length()).fold(0.0, f64::max)
 }
 
-/// A scene in which every grain comes to where no other solution leads, on discs and on the level, 16 d wide.
+/// A scene 16 d wide on discs and on a level, in which each grain has only one place to come to rest.
 pub(super) fn at_rest_on_discs() -> (Scene, f64) {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];
@@ -41,7 +41,7 @@ fn a_packing_moved_across_the_border_goes_the_same_way() {
         for bond in [0.0, 2.0] {
             scene.parameters.bond = bond;
             let mut still = start(&scene);
-            // Far from both borders nothing is other than without them, to the last bit.
+            // Far from both borders the run is bitwise as without borders.
             let mut inside = start(&in_cell(&scene, [-0.75 * width, 1.5 * width], 0.0));
             let shifts = [0.37, 0.5, 0.81].map(|part| part * width);
             let moved = |shift| start(&in_cell(&scene, [-0.5 * width, width], shift));
@@ -57,7 +57,8 @@ fn a_packing_moved_across_the_border_goes_the_same_way() {
                 for (shift, moved) in &mut moved {
                     take_steps(moved, 1);
                     let off = farthest(&still, moved, *shift) / scene.mean_diameter;
-                    // Under range a gap of 1e-4 d is as good as none, and a grain comes to rest with it or without.
+                    // Under `range` a gap of 1e-4 d counts as a contact, so a grain can come to rest with this gap or
+                    // without it.
                     let rests = if stepper == Stepper::Range { 1.1e-4 } else { 1e-6 };
                     assert!(off < rests, "{stepper} {method} {bond}, {shift} m, {step}: {off} d");
                 }
@@ -84,10 +85,10 @@ fn numbers_of_grains_mean_nothing_across_the_border() {
     }
 }
 
-/// A pile that slides over the border of its cell, on a base that is moved along.
+/// A pile that slides over the border of its cell, on a moving base.
 pub(super) fn sliding(bond: f64) -> Scene {
     let mut scene = pressed_pile(36, 0.3, 11, parameters(bond, 5e-4, 0.3, 0.5));
-    // Discs of the base touch one another, the last and the first across the border.
+    // The discs of the base touch one another, and the last touches the first across the border.
     let (left, count) = (scene.fixed_discs[0].position.x, scene.fixed_discs.len());
     let width = count as f64 * 2.0 * scene.fixed_discs[0].radius;
     scene.periodic = Some(Periodic::along_x([left, left + width]));
@@ -115,7 +116,7 @@ fn remedies_work_across_the_border() {
     }
 }
 
-/// From grain 1 to the nearest image of grain 0, m.
+/// Vector from grain 1 to the nearest image of grain 0, m.
 fn offset(run: &Simulation) -> DVec2 {
     let (places, cell) = (run.places(), run.world().periodic.expect("a cell"));
     cell.shortest(places[0] - places[1])
@@ -123,7 +124,7 @@ fn offset(run: &Simulation) -> DVec2 {
 
 #[test]
 fn a_bonded_pair_that_circles_does_so_wherever_it_is_in_the_cell() {
-    // A pull that the iterations have not come to loses its bond.
+    // `avbd` loses bonds if its iterations do not reach the pull.
     for stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Avbd) {
         let mut pair = under_g(
             parameters(20.0, 2e-4, 0.5, 0.5),
@@ -186,7 +187,7 @@ fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
     assert!(run.observables().max_overlap < 0.02, "{:?}", run.observables());
 }
 
-/// A disc on a level under gravity that leans to the right, in a cell or not.
+/// A disc on a level under gravity that is inclined to the right, in a cell or without one.
 fn on_a_slope(stepper: Stepper, tilt: f64, periodic: Option<Periodic>) -> Scene {
     let disc = moving(DVec2::new(0.05, 0.01), 0.01, DVec2::ZERO);
     let mut scene = under_g(parameters(0.0, 5e-4, 0.0, 0.1), vec![disc]);
@@ -210,7 +211,7 @@ fn a_disc_slides_down_a_slope_without_end_as_down_one_that_wraps() {
         assert!(free.positions[0].x > 4.0 * SIDE, "{stepper}: {}", free.positions[0]);
         assert!(cell.wrap(free.positions[0]).distance(wrapped.positions[0]) < 1e-10, "{stepper}");
         assert!(free.velocities[0].distance(wrapped.velocities[0]) < 1e-10, "{stepper}");
-        // It slides, as tan 40° is above 3 μ.
+        // It slides, because tan 40° is above 3 μ.
         let expected = 9.8 * (sin - 0.1 * cos) * 0.4;
         let tolerance = if stepper == Stepper::Avbd { 2e-2 } else { 2e-3 };
         assert_close(wrapped.velocities[0].x, expected, tolerance, stepper.name());
@@ -234,7 +235,7 @@ fn a_wall_at_the_border_that_a_grain_goes_through_across_it_is_told_of() {
     };
     let (count, x) = lost(&of(vec![wall(0.5)]));
     assert!(count == 0 && x < 0.05, "it crosses the border and nothing else: {x}");
-    // The wall stands beyond the border, on either side of which the way is looked at, and before it.
+    // The wall is beyond the border and before it; the grain's path is checked on both sides of the border.
     assert_eq!(lost(&of(vec![wall(0.017)])).0, 1);
     assert_eq!(lost(&of(vec![wall(0.999)])).0, 1);
 }
@@ -275,7 +276,7 @@ fn a_disc_rolls_over_a_floor_that_ends_at_the_borders_as_over_one_without_end() 
 pub(super) const SIDE: f64 = 0.1;
 pub(super) const SQUARE: Periodic = Periodic::along_both([0.0, SIDE], [0.0, SIDE]);
 
-/// The scene turned by +90°: its left is below, and what it has below is at its right.
+/// The scene turned by +90°: its left side becomes the bottom, and its bottom becomes the right side.
 fn turned(scene: &Scene) -> Scene {
     let mut turned = scene.clone();
     for grain in &mut turned.grains {
@@ -315,7 +316,7 @@ fn a_scene_turned_by_a_right_angle_does_what_it_did() {
     }
 }
 
-/// Grains that fall without end past a fixed disc and one that is drawn upward.
+/// Grains that fall endlessly past a fixed disc and a disc that moves upward.
 pub(super) fn falling(bond: f64) -> Scene {
     let mut scene = gas(0.9, true);
     scene.gravity = Gravity::Uniform { acceleration: -9.8 * DVec2::Y };

@@ -1,4 +1,4 @@
-//! Motions, drives, cells and turns of gravity that cannot be are refused in one sentence.
+//! Impossible motions, drives, cells and turns of gravity are refused in one sentence.
 
 use super::driven::{drive_of, pressed};
 use super::sheared::{cell, gas};

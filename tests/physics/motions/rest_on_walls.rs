@@ -1,5 +1,5 @@
-//! A disc that is at rest relative to a wall keeps its gap, however the wall moves: with a rigid velocity that is the
-//! mean of the wall's over each step, exactly.
+//! A disc at rest relative to a wall keeps its gap, however the wall moves: the wall has a rigid velocity that is
+//! exactly its mean over each step.
 
 use super::through_a_file;
 use crate::common::*;
@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 const RADIUS: f64 = 0.05;
 const DT: f64 = 1e-3;
-/// Overlap at the start, in radii: bonds live on it.
+/// Overlap at the start, in radii: with it, bonds live.
 const OVERLAP: f64 = 1e-4;
 
 /// One disc in the corner of a square drum that turns at 12 rad/s. It rests in the corner, pressed by 2.4 g.
@@ -28,8 +28,8 @@ fn a_disc_in_the_corner_of_a_drum_that_turns_stays_in_it() {
         };
         let what = format!("{stepper}, {dt} s");
         let run = after(&through_a_file(&scene), (0.5 / dt) as usize);
-        // The square sank by 0.62 d per second at 1 ms before the walls' mean velocity had its inward part.
-        // The first step begins with the velocity at a moment, and not with the mean over a step.
+        // Before the walls' mean velocity had an inward part, the square sank by 0.62 d per second at 1 ms. The first
+        // step begins with the instantaneous velocity, not with the mean over a step.
         let (allowed, far) = if is_rigid(stepper) { (1e-4, 1e-3) } else { (0.05, 0.2) };
         let overlap = run.observables().max_overlap;
         assert!(overlap < allowed, "{what}: overlaps by {overlap} d");
@@ -43,7 +43,7 @@ fn is_rigid(stepper: Stepper) -> bool {
     [Stepper::Moreau, Stepper::Range].contains(&stepper)
 }
 
-/// What a valley consists of.
+/// The parts of a valley.
 struct Valley {
     name: &'static str,
     boundaries: Vec<Boundary>,
@@ -52,12 +52,12 @@ struct Valley {
 
 const BOTTOM: DVec2 = DVec2::new(0.3, 0.1);
 
-/// Where a disc lies in a valley of 90°.
+/// Centre of a disc in a valley of 90°.
 fn place_in_valley() -> DVec2 {
     BOTTOM + SQRT_2 * RADIUS * (1.0 - OVERLAP) * DVec2::Y
 }
 
-/// A valley in every shape.
+/// Valleys of all shapes.
 fn valleys() -> Vec<Valley> {
     let at = |x: f64, y: f64| BOTTOM + 0.2 * DVec2::new(x, y);
     let [left, bottom, right] = [at(-1.0, 1.0), BOTTOM, at(1.0, 1.0)];
@@ -92,8 +92,8 @@ fn valleys() -> Vec<Valley> {
     ]
 }
 
-/// Every kind of course, with the velocity and the spin that it begins with. All are back where they were, or go on
-/// evenly, after each half of a second.
+/// Every kind of course, with its initial velocity and spin. After each half second, all are back at their initial
+/// place or move evenly.
 fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     let (pivot, c) = (DVec2::new(0.02, -0.05), place_in_valley());
     let about = |rate: f64| (rate * (c - pivot).perp(), rate);
@@ -128,7 +128,7 @@ fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     ]
 }
 
-/// By how much the gaps of a run's contacts change from 0.5 s to 1 s, in diameters per second.
+/// Largest change of a contact's gap from 0.5 s to 1 s, in diameters per second.
 fn drift(scene: &Scene, contacts: usize) -> f64 {
     let half = (0.5 / scene.parameters.time_step_secs).round() as usize;
     let mut run = start(scene);
@@ -143,7 +143,7 @@ fn drift(scene: &Scene, contacts: usize) -> f64 {
     changes.fold(0.0, f64::max) / 0.5 / scene.mean_diameter
 }
 
-/// Holds the drift of a scene to the second order in Δt, or to rounding.
+/// Checks that the drift of a scene is of second order in Δt, or rounding.
 #[track_caller]
 fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
     let [coarse, fine] = [1.0, 0.5].map(|part| {
@@ -151,15 +151,15 @@ fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
         scene.parameters.time_step_secs *= part;
         drift(&scene, contacts)
     });
-    // Springs settle slowly, and bear the loads of the motion by overlap.
+    // Springs settle slowly, and carry the loads of the motion by overlap.
     assert!(coarse.max(fine) < 1e-2, "{what}: {coarse:e}, then {fine:e} d per second");
     if is_rigid(scene.stepper) {
-        // An overlap of 1e-4 r moves the point of contact by as much.
+        // An overlap of 1e-4 r displaces the contact point by as much.
         assert!(fine < coarse / 3.5 + 1e-6, "{what}: {coarse:e}, then {fine:e} d per second");
     }
 }
 
-/// The disc is held in the valley by its bonds.
+/// Bonds hold the disc in the valley.
 #[test]
 fn a_disc_that_goes_with_its_walls_keeps_its_gaps_under_every_stepper_motion_and_shape() {
     for ((valley, course), &stepper) in pairs(0..valleys().len(), courses())
@@ -195,7 +195,7 @@ fn a_disc_that_goes_with_its_walls_keeps_its_gaps_under_every_stepper_motion_and
     }
 }
 
-/// A bonded disc goes round with a disc whose surface goes round, by a turn of the disc or by a belt.
+/// A bonded disc moves round with the surface of a disc, which turns or has a belt.
 #[test]
 fn a_disc_that_goes_round_with_a_surface_keeps_its_gap() {
     let (large, rate) = (0.2, 4.0);
@@ -216,10 +216,10 @@ fn a_disc_that_goes_round_with_a_surface_keeps_its_gap() {
     }
 }
 
-/// Rollers that turn on the spot under a disc without friction are walls at rest.
+/// Rollers that turn on the spot under a frictionless disc act like walls at rest.
 #[test]
 fn rollers_that_do_not_rub_leave_what_lies_on_them_in_peace() {
-    // Shocks under range see a disc that turns as one that goes sideways.
+    // Under `range`, shocks treat a turning disc like one that moves sideways.
     for &stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Range) {
         let grain = Grain::at_rest(RADIUS * SQRT_2 * (1.0 - OVERLAP) * DVec2::Y, RADIUS);
         let discs = [-1.0, 1.0].map(|side| fixed(side * RADIUS * SQRT_2 * DVec2::X, RADIUS));
@@ -256,7 +256,7 @@ fn a_disc_that_slides_along_a_wall_that_turns_keeps_its_gap_to_the_second_order(
     }
 }
 
-/// With bounces as well: a disc that lies on a floor which gathers speed does not strike it.
+/// The same with restitution: a floor that accelerates does not strike a disc that lies on it.
 #[test]
 fn a_disc_on_a_floor_that_is_shaken_does_not_bounce_while_it_is_pressed() {
     let course = MotionCourse::Sine {
@@ -279,7 +279,7 @@ fn a_disc_on_a_floor_that_is_shaken_does_not_bounce_while_it_is_pressed() {
     }
 }
 
-/// From 9 rad/s on the drum presses its grains against the wall.
+/// Above 9 rad/s the drum presses its grains against the wall.
 #[test]
 fn a_fast_drum_loses_no_grain() {
     let mut scene = built_in("drum").expect("a scene of that name");

@@ -1,4 +1,4 @@
-//! Borders that shear: no place is marked by them, momentum and energy are accounted for, and flows take their profile.
+//! Borders that shear: they mark no place, momentum and energy are accounted for, and flows take their profile.
 
 use crate::common::*;
 
@@ -9,7 +9,7 @@ pub(super) fn cell(shear_rate: f64) -> Periodic {
     Periodic { shear_rate, ..Periodic::along_both([0.0, SIZE.x], [0.0, SIZE.y]) }
 }
 
-/// Every stepper, with every method that knows of images that slide.
+/// Every stepper, with every method that accepts sliding images.
 pub(super) fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     let takes = |method: Method| method.info().takes_shear;
     every_way()
@@ -17,7 +17,7 @@ pub(super) fn ways() -> impl Iterator<Item = (Stepper, Method)> {
         .filter(move |(stepper, method)| !stepper.uses_method() || takes(*method))
 }
 
-/// 80 discs with random velocities beside those of the shear, whose momentum is that of the shear alone.
+/// 80 discs with the velocities of the shear plus random ones. Their momentum is that of the shear alone.
 pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
     let mut random = random(7);
     let mut grains: Vec<_> = (0..80)
@@ -38,8 +38,8 @@ pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
 
 #[test]
 fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
-    // Side by side across the border and at rest each: what rubs them is the sliding of the border alone, until
-    // friction's impulse μP or the slip's own mass, m_t U, is used up.
+    // The discs meet across the border and have no velocity along it. They rub only because the border slides, until
+    // the friction impulse μP or m_t U is reached.
     let discs = [DVec2::new(0.055, 0.0099), DVec2::new(0.055, SIZE.y - 0.0099)];
     let mut scene = without_g(
         parameters(0.0, 1e-4, 0.0, 0.2),
@@ -51,14 +51,14 @@ fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
         (scene.stepper, scene.solver.method) = (stepper, method);
         let run = after(&scene, 1);
         let velocities = run.velocities();
-        // Both stop along y with P = 0.1 m each, so that μP = 0.02 m; the image of the first goes by with 2 m/s.
+        // Both stop along y with P = 0.1 m each, so μP = 0.02 m. The image of the first passes with 2 m/s.
         let expected = [DVec2::new(-0.02, 0.0), DVec2::new(0.02, 0.0)];
         for (found, expected) in velocities.iter().zip(expected) {
             assert!(found.distance(expected) < 1e-12, "{method}: {found} {expected}");
         }
         let now = run.observables();
         let mass = run.grains().masses[0];
-        // P_t times the speed of the image, and as much less what rubbing has taken.
+        // P_t times the speed of the image; friction takes the rest of it.
         assert_close(
             now.border_work.expect("it shears"),
             0.02 * mass * 2.0,
@@ -98,7 +98,7 @@ fn nothing_hangs_on_where_the_borders_are() {
             for k in 1..80 {
                 let [here, there] =
                     [&one, &other].map(|run| cell.shortest(at(run, k) - at(run, 0)));
-                // Farther away the nearest image is another one where its column is.
+                // At longer distances another image is the nearest one.
                 if here.length() < 0.03 {
                     farthest = farthest.max(here.distance(there));
                 }
@@ -159,7 +159,8 @@ fn momentum_less_that_of_the_shear_stays() {
         }
         assert!(crossings > 10, "{stepper}: {crossings}");
         let scale: f64 = run.grains().masses.iter().sum::<f64>() * rate * SIZE.y;
-        // Schemes move grains by other velocities than they end a substep with, or by places alone.
+        // Other schemes move grains by velocities that differ from those at the end of a substep, or correct only
+        // positions.
         let exact = [Stepper::Moreau, Stepper::Dem].contains(stepper);
         let allowed = if exact { 1e-12 } else { 2e-3 };
         let off = momentum(&run).distance(before) / scale;
@@ -208,7 +209,7 @@ fn remedies_know_of_images_that_slide() {
     let cut = with(&|remedies| remedies.max_travel = 0.02);
     assert!(cut < 0.05, "{cut}");
     let ahead = with(&|remedies| remedies.speculative = true);
-    // What others deflect within the step is not seen ahead.
+    // The detection ahead does not see deflections by other grains within the step.
     assert!(ahead < none, "{ahead}");
     let pushed = with(&|remedies| remedies.push_out = true);
     assert!(pushed < 2.0 * none, "{pushed}");
@@ -235,7 +236,7 @@ fn a_dense_flow_takes_the_profile_of_the_borders_from_rest() {
     let rate = 20.0;
     let mut scene = gas(rate, 0.1, 0.5);
     for grain in &mut scene.grains {
-        // They nearly fill the cell, and none goes along with the borders.
+        // The grains nearly fill the cell, and none moves with the borders.
         (grain.radius, grain.velocity) =
             (0.0058, grain.velocity - rate * grain.position.y * DVec2::X);
     }
@@ -285,14 +286,15 @@ fn a_flow_twice_as_fast_takes_the_same_way_and_bears_four_times_as_much() {
 
 #[test]
 fn an_image_that_slides_towards_discs_at_rest_is_found() {
-    // Both rest, so that nothing but the border's way says that the pairs that were near are no longer those.
+    // Both discs are at rest, so only the border's movement shows that the list of near pairs is out of date.
     for &stepper in Stepper::ALL {
         let at = |x: f64, y: f64| moving(DVec2::new(x, y), 0.01, DVec2::ZERO);
         let grains = vec![at(0.03, 0.005), at(0.08, SIZE.y - 0.005)];
         let mut scene = without_g(parameters(0.0, 1e-4, 0.0, 0.2), grains);
         (scene.stepper, scene.periodic) = (stepper, Some(cell(1.0)));
         let mut run = start(&scene);
-        // The image goes 0.1 m/s, and after a third of a second it has gone three centimetres and meets the other.
+        // The image moves at 0.1 m/s. After a third of a second it has moved three centimetres and meets the other
+        // disc.
         take_steps(&mut run, 2000);
         assert_eq!(run.observables().contacts, 0, "{stepper}: not yet");
         let mut met = 0;

@@ -1,6 +1,6 @@
-//! A disc that is laid on a surface which slides away under it. Coulomb's friction pulls it along with μg until it
-//! goes with the surface. With V the speed of that, a disc that cannot turn then has v = V. One that can has
-//! v = μgt and rω = 2μgt as long as it slips, as it does until v + rω = V: from then on it rolls with v = V/3.
+//! A disc that is laid on a sliding surface. Coulomb friction accelerates it with μg until it moves with the surface.
+//! Let V be the speed of the surface. A disc without rotation then has v = V. A disc with rotation has v = μgt and rω
+//! = 2μgt while it slips, until v + rω = V; then it rolls with v = V/3.
 
 use super::through_a_file;
 use crate::common::*;
@@ -10,7 +10,7 @@ const MU: f64 = 0.25;
 const DT: f64 = 1e-3;
 const SPEED: f64 = 0.6;
 
-/// A level whose surface goes to the right with [`SPEED`], by every shape and motion that can say it.
+/// A level whose surface moves to the right with [`SPEED`], by every shape and motion that can express it.
 fn belts() -> Vec<(&'static str, Boundary, Motion)> {
     let at = |x: f64| DVec2::new(x, 0.0);
     let low = |x: f64| DVec2::new(x, -1.0);
@@ -52,7 +52,7 @@ fn a_disc_on_a_belt_is_pulled_along_by_friction_until_it_goes_with_it() {
             take_steps(&mut run, slipping);
             let speed = run.velocity(0).x;
             let expected = MU * G * DT * slipping as f64;
-            // The springs of the smooth method have not settled yet.
+            // The springs of `dem` have not settled yet.
             let tolerance = if stepper == Stepper::Dem { 0.1 } else { 1e-9 };
             assert_close(speed, expected, tolerance, &what);
             let mut of_walls = 0.0;
@@ -64,7 +64,7 @@ fn a_disc_on_a_belt_is_pulled_along_by_friction_until_it_goes_with_it() {
             assert_close(grains.velocities[0].x, end, 1e-9, &what);
             let spin = RADIUS * grains.angular_velocities[0];
             assert!((spin - (SPEED - end)).abs() < 1e-9, "{what}: rω {spin}");
-            // All that the belt gave went by friction, whose impulse is mv, at the speed of the belt.
+            // The belt transmits all its work by friction, with the impulse mv at the speed of the belt.
             let expected = grains.masses[0] * end * SPEED;
             assert_close(of_walls, expected, 1e-9, &what);
         }
@@ -110,13 +110,13 @@ fn a_belt_goes_round_a_segment_and_a_disc_that_turns_is_a_belt() {
         disc(Motion { fixed_discs: vec![0], surface_speed: SPEED, ..Motion::default() });
     let [one, other] = [&turns, &goes_round].map(|run| run.place(0));
     assert!(one.x < -0.01, "it was pulled along: {one}");
-    // The belt has its speed at the disc, and what turns has it at the grain, across the gap.
+    // The belt has its speed at the disc, but a turning body has it at the grain, across the gap.
     assert!(one.distance(other) < 1e-8, "{one} and {other}");
 }
 
 const MU_OF_DRUM: f64 = 0.5;
 
-/// A drum of so many sides about the origin.
+/// A drum with this many sides about the origin.
 fn drum(radius: f64, sides: usize) -> Boundary {
     let corner = |k: usize| {
         let angle = std::f64::consts::TAU * ((k % sides) as f64 + 0.5) / sides as f64;
@@ -125,9 +125,9 @@ fn drum(radius: f64, sides: usize) -> Boundary {
     Boundary::Polyline { points: (0..=sides).map(corner).collect() }
 }
 
-/// A disc that cannot turn sticks to the wall and goes with the point that it touches: with ΩR/(R − r) about the axis,
-/// until tan φ = μ. From there on it slides, as a pendulum about that angle would swing: the friction that draws it on
-/// does not change with the slip.
+/// A disc without rotation sticks to the wall and moves with the point that it touches, with ΩR/(R − r) about the
+/// axis, until tan φ = μ. From there on it slides and swings like a pendulum about that angle, because friction does
+/// not change with the slip.
 #[test]
 fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     let (outer, radius, rate) = (1.0, 0.1, 0.2);
@@ -153,7 +153,7 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
         let first = angle(&run);
         take_steps(&mut run, 1000);
         let gone = angle(&run) - first;
-        // Corners of the drum turn the normal by 2π/2000, which a step meets late.
+        // At each corner of the drum the normal turns by 2π/2000, which a step detects late.
         assert_close(gone, rate * outer / (outer - radius), 1e-2, stepper.name());
         take_steps(&mut run, 1500);
         let (mut least, mut most) = (f64::INFINITY, 0f64);
@@ -162,14 +162,14 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
             (least, most) = (least.min(angle(&run)), most.max(angle(&run)));
         }
         assert_close(0.5 * (least + most), MU_OF_DRUM.atan(), 1e-2, stepper.name());
-        // No faster than the wall, at √(g/(R − r)·√(1 + μ²)).
+        // It is never faster than the wall, and swings at √(g/(R − r)·√(1 + μ²)).
         let swing =
             rate * outer / (outer - radius) / (G * MU_OF_DRUM.hypot(1.0) / (outer - radius)).sqrt();
         assert!(most - least < 2.1 * swing, "{stepper}: {least} to {most}");
     }
 }
 
-/// Grains in a drum over a turn: none gets out, and the drum shows where it is.
+/// Grains in a drum for one turn: none escapes, and the drum shows its orientation.
 #[test]
 fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     let mut random = random(4);
@@ -205,12 +205,12 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     }
 }
 
-/// A wall that rises under grains passes none of them; one that jumps over a grain has.
+/// No grain is lost if a wall rises under it; a grain is lost if a wall jumps over it.
 #[test]
 fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     let floor = Boundary::Segment { from: DVec2::new(-1.0, 0.0), to: DVec2::new(1.0, 0.0) };
     for (speed, lost) in [(0.5, 0), (-0.5, 0), (200.0, 1)] {
-        // Farther off than touches: what touches a wall is taken along, however fast.
+        // The gap exceeds a contact's: a wall carries every grain that touches it, at any speed.
         let grain = Grain::at_rest(DVec2::new(0.1, 0.05001), 0.05);
         let mut scene = Scene {
             boundaries: vec![floor.clone()],
@@ -223,7 +223,7 @@ fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     }
 }
 
-/// Fixed discs far outside of any list of near pairs come to a grain and push it before them.
+/// Fixed discs from far outside any list of near pairs reach a grain and push it ahead of them.
 #[test]
 fn discs_that_move_are_found_wherever_they_come_to() {
     for &stepper in Stepper::ALL {
@@ -247,7 +247,7 @@ fn discs_that_move_are_found_wherever_they_come_to() {
     }
 }
 
-/// A pile on a base that is shaken both ways, beside a wall that slides along itself and into it, and a belt.
+/// A pile on a base that shakes in both directions, beside a wall that moves along itself and into it, and a belt.
 fn shaken() -> Scene {
     let mut scene = pressed_pile(40, 0.3, 5, parameters(2.0, 1e-3, 0.3, 0.5));
     let amplitude = DVec2::new(1e-3, 1e-3);
@@ -284,8 +284,8 @@ fn the_budget_of_energy_is_closed_where_walls_move_and_where_gravity_turns() {
             for _ in 0..100 {
                 let (now, off, _) = balance(&mut run);
                 scale += (now.normal_work + now.tangential_work + now.gravity_work).abs();
-                // A method that comes to no end leaves wedged grains large impulses, which cancel, but not their
-                // rounding.
+                // An unconverged method leaves large impulses on wedged grains. They cancel, but their rounding
+                // errors do not.
                 let impulses = run.contacts().impulses().iter();
                 let rounding: f64 = impulses.map(|it| it.normal.abs() + it.tangential.abs()).sum();
                 assert!(off < allowed * scale + 1e-13 * rounding, "{name}, {way}: {off} J");
@@ -325,7 +325,7 @@ fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
     }
 }
 
-/// At constant speed a wall lifts a grain by the work m g h, and gives it ½mv² and as much again in the shock.
+/// At constant speed a wall's work is m g h to lift a grain, ½mv² to accelerate it, and ½mv² that the shock takes.
 #[test]
 fn the_work_of_a_wall_is_what_it_lifts() {
     for (stepper, method) in every_way() {
@@ -350,7 +350,7 @@ fn the_work_of_a_wall_is_what_it_lifts() {
     }
 }
 
-/// Without bounces what contacts take is never less than nothing: not even where walls put energy in.
+/// Without restitution the energy that contacts dissipate is never negative, even if walls do work.
 #[test]
 fn contacts_take_what_walls_give_beyond_the_grains_own() {
     let mut scene = shaken();

@@ -1,11 +1,10 @@
-//! Nothing depends on whether bodies go past an onlooker or the onlooker past them; on whether a wall is called a
-//! piston; on left and right.
+//! Nothing depends on the frame of reference, on calling a wall a piston, or on left and right.
 
 use crate::common::*;
 
 const VELOCITY: DVec2 = DVec2::new(0.25, 0.15);
 
-/// What rests, falls, overlaps and is bonded on one kind of floor.
+/// Grains that rest, fall, overlap and are bonded, on one kind of floor.
 fn on_a_floor(shape: usize) -> Scene {
     let mut scene = at_rest_and_falling();
     scene.grains[3].velocity = 0.02 * DVec2::X;
@@ -22,14 +21,14 @@ fn on_a_floor(shape: usize) -> Scene {
         _ => vec![piston(DVec2::ZERO, DVec2::Y, 0.0, f64::from(u32::MAX))],
     };
     if shape == 3 {
-        // Each grain stands on a disc of its own.
+        // Each grain is on a disc of its own.
         let below = |grain: &Grain| fixed(at(grain.position.x, -0.02), 0.02);
         scene.fixed_discs = scene.grains.iter().map(below).collect::<Vec<Disc>>();
     }
     scene
 }
 
-/// Longest distance of a grain from where the other view has it in any step, in d.
+/// Longest distance between a grain in the two frames of reference over all steps, in d.
 fn difference_of_views(scene: &Scene) -> f64 {
     let (mut seen, mut velocity) = (scene.clone(), VELOCITY);
     if let Some(Boundary::Piston { speed, .. }) = seen.boundaries.first_mut() {
@@ -71,8 +70,8 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
                 }
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
                 let off = difference_of_views(&scene);
-                // A surface whose speed were forgotten in one step would be off by 0.02 d. Under range a gap of 1e-4 d
-                // is as good as none, and a grain comes to rest with it or without.
+                // Forgetting the surface speed in one step would give 0.02 d. Under `range` a gap of 1e-4 d counts as
+                // a contact, so a grain can come to rest with this gap or without it.
                 let rests = if stepper == Stepper::Range && shape == 3 { 1.1e-4 } else { 1e-5 };
                 if off > rests {
                     differences.push((shape, stepper, method, push_out, off));
@@ -83,7 +82,7 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
     assert!(differences.is_empty(), "{differences:?}");
 }
 
-/// Two walls of a box with grains between them that come nearer, then stay.
+/// Two walls of a box that approach with grains between them, then stop.
 fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
     let (speed, travel) = (0.1, 2e-3);
     let mut scene = pressed_pile(30, 0.3, 11, parameters(5.0, 1e-3, 0.3, 0.5));
@@ -125,7 +124,7 @@ fn mirrored(vector: DVec2) -> DVec2 {
     DVec2::new(-vector.x, vector.y)
 }
 
-/// Grains on a shaken floor between a wall that turns, a belt and a disc that goes to and fro.
+/// Grains on a shaken floor between a turning wall, a belt and a disc that oscillates.
 fn of_all_kinds(mirror: bool) -> Scene {
     let side = |vector: DVec2| if mirror { mirrored(vector) } else { vector };
     let turn = if mirror { -1.0 } else { 1.0 };
@@ -177,7 +176,7 @@ fn a_mirrored_scene_goes_on_mirrored() {
     }
 }
 
-/// What hits a resting disc gives it (1 + ρ) times the speed of the point that touches.
+/// A wall that hits a resting disc gives it (1 + ρ) times the speed of the contact point.
 #[test]
 fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
     let (radius, arm, rate) = (0.05, 1.0, 2.0);
@@ -206,7 +205,7 @@ fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
         for stepper in [Stepper::Moreau, Stepper::Range] {
             scene.stepper = stepper;
             let mut run = start(&scene);
-            // Struck after (1 − angle of the disc as seen from the pivot)/rate; then it flies off.
+            // The paddle strikes after (1 − the disc's angle seen from the pivot)/rate; then the disc flies off.
             let mut steps = 0;
             while run.velocity(0) == DVec2::ZERO {
                 run.step().expect("a finite state");

@@ -1,21 +1,21 @@
-//! What a step that is called solved must be worth, by sums over world data that no method had a hand in.
+//! The accuracy of steps that are reported as solved, computed from world data and independent of all methods.
 
 use crate::common::natural_map::{judge, natural_map};
 use crate::common::*;
 
-/// ‖e‖ over the ‖ΔP‖ that a stop by changes allows.
+/// Largest ratio of ‖e‖ to the ‖ΔP‖ that a stop by changes allows.
 const LEFT: f64 = 8.0;
 
-/// Errors that are rounding, in parts of what contacts carry.
+/// Rounding errors relative to contact impulses.
 const ROUNDING: f64 = 1e-12;
 
-/// A disc that falls on a floor: methods have called its steps solved with nothing done.
+/// A disc that falls on a floor: methods have reported its steps as solved without doing anything.
 fn falling_disc() -> Scene {
     let disc = moving(0.006 * DVec2::Y, 5e-3, DVec2::ZERO);
     Scene { boundaries: vec![level()], ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), vec![disc]) }
 }
 
-/// A disc on a belt, and one that a wall pushes along the floor.
+/// A disc on a belt, and a disc that a wall pushes along the floor.
 fn moved_discs() -> [Scene; 2] {
     let disc = moving(0.005 * DVec2::Y, 5e-3, DVec2::ZERO);
     let still =
@@ -31,7 +31,7 @@ fn moved_discs() -> [Scene; 2] {
     ]
 }
 
-/// The built-in scenes whose steps world data can judge; those made to break methods alone, or all.
+/// The built-in scenes whose steps world data can judge: all, or only the paper's and those made to break methods.
 fn scenes(all: bool) -> Vec<Scene> {
     let small = [SceneGroup::Paper, SceneGroup::Stability];
     let is_small = |info: &&SceneInfo| info.name != "pile" && small.contains(&info.group);
@@ -52,7 +52,7 @@ fn scenes(all: bool) -> Vec<Scene> {
     [falling_disc()].into_iter().chain(moved_discs()).chain(scenes).filter(is_judged).collect()
 }
 
-/// Every method by every stop, and those that take them under every model of friction.
+/// Every method with every stop test, and with every friction model that it accepts.
 fn solvers() -> Vec<SolverSettings> {
     let mut solvers = Vec::new();
     for ((method, model), (stop, tolerance)) in pairs(
@@ -76,7 +76,7 @@ fn solvers() -> Vec<SolverSettings> {
     solvers
 }
 
-/// The bound on the velocities' error under Coulomb's law and what it is held against, m/s.
+/// The velocity error under Coulomb's law, computed from world data, and the scale that it is compared with, m/s.
 fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
     let friction = if run.physics().friction { run.parameters().friction } else { 0.0 };
     let world = run.world();
@@ -107,7 +107,7 @@ fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
     ((gap.max(0.0) / mass).sqrt(), (fall + undone / mass).sqrt())
 }
 
-/// Takes a step, and says what is wrong with it if it is called solved.
+/// Takes a step. Returns an error if the step is reported as solved and is not.
 fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result<bool, String> {
     let before = run.grains().clone();
     let Ok(&row) = run.step() else { return Ok(false) };
@@ -115,7 +115,7 @@ fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result
         return Ok(false);
     }
     let (error, scale, _) = natural_map(run, &before);
-    // What a model of friction leaves is told over the same scale.
+    // The residual of the friction model has the same scale.
     let error = row.model_residual.map_or(error, |left| left * scale);
     let carried = |shift: f64| -> f64 {
         let judged = judge(run, &before);
@@ -143,8 +143,8 @@ fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result
     Err(format!("solved with {left:e} left of at most {allowed:e}; residual {:e}", row.residual))
 }
 
-/// Every `nth` of all scenes by all solvers for so many steps each; how many steps were called solved, and by
-/// whom falsely.
+/// Runs every `nth` pair of scene and solver for `steps` steps. Returns the number of steps reported as solved, and
+/// the false reports.
 fn look(scenes: Vec<Scene>, nth: usize, steps: usize) -> (usize, Vec<String>) {
     let (mut solved, mut wrong) = (0, Vec::new());
     for (scene, solver) in pairs(scenes, solvers()).into_iter().step_by(nth) {
@@ -168,8 +168,8 @@ fn no_step_is_called_solved_that_is_not() {
     assert!(solved > 1000, "{solved} steps were called solved");
 }
 
-/// The steps of `range` are pieces with problems of their own, which world data of whole steps cannot judge: what is told of
-/// them is the largest residual of all pieces, by Coulomb's law or by the model that was solved.
+/// The steps of `range` consist of pieces with problems of their own, which world data of whole steps cannot judge.
+/// The reported residual is the largest of all pieces, by Coulomb's law or by the model that was solved.
 #[test]
 fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
     let is_by_residual = |solver: &SolverSettings| solver.stop == StopTest::Residual;
@@ -177,7 +177,7 @@ fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
     let (mut solved, mut unsolved) = (0, 0);
     for (scene, solver) in pairs(scenes(false), solvers.collect::<Vec<_>>()) {
         let name = format!("{}, {solver:?}", scene.name);
-        // Few sweeps, so that some pieces are not solved.
+        // Few sweeps, so that some pieces are unsolved.
         let solver = SolverSettings { max_sweeps: 20, ..solver };
         let Ok(mut run) = Scene { solver, stepper: Stepper::Range, ..scene }.simulation() else {
             continue;

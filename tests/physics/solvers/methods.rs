@@ -1,4 +1,4 @@
-//! The methods against each other: one problem, one answer.
+//! The methods against each other: one problem has one solution.
 
 use crate::common::*;
 
@@ -18,7 +18,7 @@ fn with(scene: &Scene, method: Method, tolerance: f64) -> Simulation {
     Scene { solver, ..scene.clone() }.simulation().expect("a proper scene")
 }
 
-/// Without friction the velocities of a step are unique, so a tight solve has one answer.
+/// Without friction the velocities of a step are unique, so all tight solves agree.
 #[test]
 fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
     for (seed, rotation) in [(1, true), (2, false)] {
@@ -30,7 +30,7 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
         }
         let mut fastest = 0f64;
         for _ in 0..12 {
-            // From one state each: a difference would grow in a pile.
+            // All methods start from one state, because differences grow in a pile.
             let mut by_sweeps = with(&scene, Method::Nsgs, 1e-10);
             assert!(by_sweeps.step().expect("a finite state").converged);
             let orders = Ordering::ALL.iter().map(|order| (Method::Nsgs, *order));
@@ -55,7 +55,7 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
     }
 }
 
-/// The scene a few steps later.
+/// The scene after a few steps.
 fn advanced(scene: &Scene) -> Scene {
     let mut run = with(scene, Method::Nsgs, 1e-8);
     take_steps(&mut run, 5);
@@ -85,7 +85,7 @@ fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps(
     }
 }
 
-/// How a problem was solved, with its residual.
+/// Solves a problem. Returns its report and residual.
 struct Solve(SolverSettings);
 
 impl ProblemVisitor for Solve {
@@ -97,7 +97,7 @@ impl ProblemVisitor for Solve {
     }
 }
 
-/// How a problem is solved by the first settings, and then by the second from there.
+/// Solves a problem with the first settings and then, from that solution, with the second.
 pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 
 impl ProblemVisitor for SolveTwice {
@@ -109,7 +109,7 @@ impl ProblemVisitor for SolveTwice {
     }
 }
 
-/// Piles of every kind of physics that have begun to fall; the last is without cohesion.
+/// Piles of every kind of physics that have begun to fall; the last has no cohesion.
 fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
     let kinds = [
@@ -126,11 +126,12 @@ fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     })
 }
 
-/// Made by sweeps: piles are chaotic, so that a change of what makes them changes what all methods are asked.
+/// Moments made by sweeps. Piles are chaotic: if the method that makes the moments changes, so do the problems of all
+/// methods.
 fn moments() -> Vec<Simulation> {
     let mut moments = Vec::new();
     for (_, _, mut scene) in moving_piles() {
-        // A gap that closes makes a warm start of admm worse than none.
+        // A closing gap makes a warm start of admm worse than a cold one.
         scene.parameters.touch_tolerance = 0.0;
         let mut run = with(&scene, Method::Nsgs, 1e-8);
         for _ in 0..6 {
@@ -141,14 +142,14 @@ fn moments() -> Vec<Simulation> {
     moments
 }
 
-/// The next problem of a moment, as a method with these settings gets it.
+/// The next problem of a moment, solved with these settings.
 fn next_with(moment: &Simulation, solver: SolverSettings) -> (SolveReport, f64) {
     let mut run = moment.clone();
     run.set_solver(solver).expect("proper settings");
     run.next_problem(Solve(solver))
 }
 
-/// The residual that a method is asked for here: Jacobi's method creeps.
+/// Residual required of a method here. Jacobi's method converges slowly.
 fn tight_for(method: Method) -> f64 {
     if method == Method::Jacobi { 1e-5 } else { 1e-8 }
 }

@@ -1,5 +1,5 @@
-//! Properties of every solved step, over random piles: what the solver says of itself is judged
-//! anew from positions, velocities and impulses alone.
+//! Properties of every solved step of random piles: the solver's reports are checked against positions, velocities
+//! and impulses only.
 
 use std::cell::Cell;
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use crate::common::natural_map::{judge, natural_map};
 use crate::common::*;
 
-/// Runs a property over `cases` scenes, the same ones every time.
+/// Checks a property for `cases` scenes, which are the same each time.
 fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseError>) {
     let bond = prop_oneof![1 => Just(0.0), 4 => 0.0..100.0];
     let friction = prop_oneof![1 => Just(0.0), 4 => 0.0..=1.0];
@@ -40,7 +40,7 @@ fn pile(
     scene
 }
 
-/// Takes a step; gives the grains before it.
+/// Takes a step. Returns the grains before it.
 fn step(run: &mut Simulation) -> Grains {
     let before = run.grains().clone();
     run.step().expect("a finite state");
@@ -189,9 +189,9 @@ fn physics_without_cohesion_is_bond_zero_bitwise() {
 
 #[test]
 fn overlap_grows_by_no_more_than_one_steps_travel() {
-    // With R = r_i + r_j and x the offset of the centres, ‖x + Δt v‖ ≥ n·(x + Δt v) for the normal n
-    // before: a new contact overlaps by no more than Δt times the closing speed along n. An old one
-    // ends its step with v_n ≥ −ρ v_n^{n−1} but for the residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
+    // Let R = r_i + r_j, x the offset of the centres and n the normal before the step. Then ‖x + Δt v‖ ≥ n·(x + Δt
+    // v): a new contact overlaps by at most Δt times the closing speed along n. An old contact ends its step with v_n
+    // ≥ −ρ v_n^{n−1} except for the residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
     let (old, new) = (Cell::new(0), Cell::new(0));
     for_random_piles(32, |scene| {
         let mut run = start(&scene);
@@ -229,7 +229,7 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     assert!(old.get() > 1000 && new.get() > 100, "{} old, {} new contacts", old.get(), new.get());
 }
 
-/// A problem of every model, and how many contacts it has at least.
+/// A problem of every model, with the least number of its contacts.
 fn scenes() -> Vec<(Scene, usize)> {
     let mut scenes = Vec::new();
     for (physics, cone) in pairs(
@@ -247,12 +247,12 @@ fn scenes() -> Vec<(Scene, usize)> {
     scenes
 }
 
-/// Rows a contact has.
+/// Rows per contact.
 fn entries<M: Model>() -> usize {
     if M::FRICTION { 2 } else { 1 }
 }
 
-/// The operator of a system, column by column, from its answers to unit impulses.
+/// The operator of a system, column by column, from its responses to unit impulses.
 fn matrix<M: Model>(system: &mut BodySystem<'_, M>, origin: &[[f64; 2]]) -> Vec<Vec<f64>> {
     let entries = entries::<M>();
     let size = entries * origin.len();
@@ -322,7 +322,7 @@ impl ProblemVisitor for Check {
         let largest = largest_eigenvalue(&matrix, scale);
         assert!(largest < 1.0 + 1e-9, "{largest}");
         assert!(largest > 0.5, "the bound is not idle: {largest}");
-        // A sweep's impulses come back as they were written, and the residual is the natural map's.
+        // Impulses of a sweep are read back as they were written, and the residual is the natural map's.
         for _ in 0..3 {
             system.sweep();
         }

@@ -1,11 +1,11 @@
-//! Alarms are true under every stepper, and their advice helps: a scene that raises one no longer does once it is
-//! changed as the alarm says.
+//! Alarms are true under every stepper, and their advice helps: a scene that raises an alarm no longer does after the
+//! change that the alarm recommends.
 
 use slump::scene::stability::{column, mass_ratio, overlapped, squeeze};
 
 use crate::common::*;
 
-/// The alarms of a run of so many steps, or to the end of a finite state.
+/// The alarms of a run of `steps` steps, or of the steps until the state is no longer finite.
 fn raised(scene: &Scene, steps: usize) -> Vec<Alarm> {
     let mut run = start(scene);
     for _ in 0..steps {
@@ -20,7 +20,7 @@ fn kinds(scene: &Scene, steps: usize) -> Vec<AlarmKind> {
     raised(scene, steps).iter().map(|alarm| alarm.kind).collect()
 }
 
-/// The alarm of a kind, and its sentence.
+/// The alarm of a kind, with its message.
 #[track_caller]
 fn alarm_of(kind: AlarmKind, scene: &Scene, steps: usize) -> (Alarm, String) {
     let alarms = raised(scene, steps);
@@ -65,7 +65,7 @@ fn overlap_that_grains_were_placed_with_is_no_matter_of_the_time_step() {
         }
         assert_eq!(kinds(&apart, 100), [], "{stepper}: placed apart");
     }
-    // So it is where grains are placed on the way.
+    // The same holds if grains are placed during the run.
     let mut run = start(&under(Stepper::Moreau, overlapped(0.0)));
     take_steps(&mut run, 3);
     let diameter = run.world().mean_diameter;
@@ -111,7 +111,7 @@ fn springs_that_give_way_ask_for_stiffness_and_not_for_a_smaller_time_step() {
     stiffer.parameters.stiffness = 1e4 * stiffness;
     assert_eq!(kinds(&stiffer, 1000), []);
 
-    // Springs through which a grain goes.
+    // A grain passes through the springs.
     let mut wall = under(Stepper::Dem, through_a_wall(1e-4, 100.0));
     wall.parameters.restitution = 1.0;
     let (alarm, _) = alarm_of(AlarmKind::GrainLost, &wall, 60);
@@ -119,7 +119,7 @@ fn springs_that_give_way_ask_for_stiffness_and_not_for_a_smaller_time_step() {
     wall.parameters.stiffness = 1e6 * alarm.stiffness.expect("the springs in force");
     assert_eq!(kinds(&wall, 60), []);
 
-    // Springs in fewer substeps than are stable.
+    // Fewer substeps than a stable run of the springs needs.
     let mut coarse = under(Stepper::Dem, squeeze(1e-2));
     (coarse.parameters.substeps, coarse.parameters.time_step_secs) = (1, 0.02);
     for kind in [AlarmKind::GrainLost, AlarmKind::Overlap, AlarmKind::NotFinite] {
@@ -130,7 +130,7 @@ fn springs_that_give_way_ask_for_stiffness_and_not_for_a_smaller_time_step() {
     assert_eq!(kinds(&coarse, 100), []);
 }
 
-/// A disc that flies at a thin wall with that speed, m/s.
+/// A disc that flies at a thin wall with this speed, m/s.
 fn through_a_wall(time_step_secs: f64, speed: f64) -> Scene {
     let grains = vec![moving(at(-0.3, 0.0), RADIUS, at(speed, 0.0))];
     let wall = Boundary::Segment { from: at(0.0, -1.0), to: at(0.0, 1.0) };
@@ -141,14 +141,14 @@ fn through_a_wall(time_step_secs: f64, speed: f64) -> Scene {
 #[test]
 fn a_wall_that_a_step_jumps_asks_for_a_smaller_time_step() {
     for &stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Dem) {
-        // A hundred diameters a step.
+        // A hundred diameters per step.
         let scene = under(stepper, through_a_wall(1e-2, 1000.0));
         let (alarm, words) = alarm_of(AlarmKind::GrainLost, &scene, 3);
         assert!(words.contains("gone through a wall") && words.contains("below 0.01 s"), "{words}");
         assert_eq!(alarm.advice, Advice::TimeStep);
         let slower = under(stepper, through_a_wall(1e-6, 1000.0));
         assert_eq!(kinds(&slower, 1000), [], "{stepper}");
-        // A quarter of a diameter deep in it.
+        // A quarter of a diameter inside the wall.
         let scene = under(stepper, through_a_wall(1e-2, 27.0));
         if let Some(alarm) = raised(&scene, 3).first() {
             assert_eq!(alarm.advice, Advice::TimeStep, "{stepper}: {alarm:?}");
@@ -186,7 +186,7 @@ fn grains_that_leave_an_open_hopper_have_not_gone_through_a_wall() {
 
 #[test]
 fn a_grain_that_jumps_over_fixed_discs_asks_for_a_smaller_time_step() {
-    // It is 0.02 m above a row of fixed discs after three steps, and 0.02 m below it after four.
+    // The disc is 0.02 m above a row of fixed discs after three steps, and 0.02 m below it after four.
     let fall = |x: f64, dt: f64| {
         let grains = vec![Grain::at_rest(at(x, 0.5), 0.05)];
         let row = (-5..=5).map(|k| fixed(at(0.1 * f64::from(k), 0.0), 0.05));
@@ -203,7 +203,7 @@ fn a_grain_that_jumps_over_fixed_discs_asks_for_a_smaller_time_step() {
     let mut run = fall(0.05, 0.5 * longest);
     take_steps(&mut run, 200);
     assert!(run.alarms().iter().all(|alarm| alarm.kind != AlarmKind::GrainLeft));
-    // Beside the row no time step holds it.
+    // Beside the row no time step can stop it.
     let mut run = fall(0.7, 0.08);
     take_steps(&mut run, 15);
     let alarm = run.alarms().iter().find(|alarm| alarm.kind == AlarmKind::GrainLeft);
@@ -212,7 +212,7 @@ fn a_grain_that_jumps_over_fixed_discs_asks_for_a_smaller_time_step() {
 
 #[test]
 fn a_small_grain_is_as_deep_as_its_own_size_says() {
-    // The small one falls 3.3 of its radii into the floor, which is 0.02 of the large one's diameter.
+    // The small disc falls 3.3 of its radii into the floor, which is 0.02 of the large disc's diameter.
     let parameters = parameters(0.0, 0.02, 0.0, 0.5);
     let small = Grain::at_rest(at(2.0, 0.5), 0.01);
     let grains = vec![Grain::at_rest(at(0.0, 0.5), 0.5), small];
@@ -226,7 +226,7 @@ fn a_small_grain_is_as_deep_as_its_own_size_says() {
     assert_eq!(run.observables().lost_grains, 1);
     scene.parameters.time_step_secs = 1e-4;
     assert_eq!(kinds(&scene, 10_000), []);
-    // Half of its diameter is an overlap, too.
+    // Half of its diameter also counts as an overlap.
     scene.parameters.time_step_secs = 1e-2;
     scene.grains[1].velocity = at(0.0, -1.0);
     scene.grains[1].position.y = 0.0149;
@@ -291,7 +291,7 @@ fn unsolved_steps_are_told_what_solves_them() {
     solved(&squeezed, "bounded friction");
 }
 
-/// A disc wedged between two fixed ones so that friction lets it neither leave nor slide.
+/// A disc wedged between two fixed ones so that friction prevents it from leaving and from sliding.
 fn wedged() -> Scene {
     let angle = 75f64.to_radians();
     let touching = 2.0 * RADIUS * (1.0 - 1e-9);
@@ -314,7 +314,7 @@ fn a_disc_that_unsolved_steps_let_sink_asks_for_what_solves_them() {
 #[test]
 fn schemes_have_no_tolerance_that_they_could_miss() {
     for stepper in [Stepper::Dem, Stepper::TgsSoft, Stepper::Avbd] {
-        // Discs that touch where nothing would move: any impulse is an error, and the residual is infinite.
+        // Touching discs at rest: any impulse is an error, and the residual is infinite.
         let grains =
             vec![Grain::at_rest(at(0.0, 0.0), RADIUS), Grain::at_rest(at(0.0998, 0.0), RADIUS)];
         let mut scene = under(stepper, without_g(parameters(0.0, 1e-3, 0.5, 0.5), grains));

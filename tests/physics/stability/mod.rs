@@ -1,8 +1,8 @@
-//! Where methods fail, guarded: the verdicts of a quick pass are those of the committed table, and
-//! what theory says of the borders is what is measured.
+//! Limits of the methods: the verdicts of a quick pass equal those of the committed table, and measured limits agree
+//! with theory.
 //!
-//! After a change that makes a verdict better, or worse for a good reason, renew the table:
-//! `cargo run --release -- stability --quick --table tests/physics/stability/table.csv --overwrite`.
+//! After a change that improves a verdict, or worsens it for a good reason, renew the table: `cargo run --release --
+//! stability --quick --table tests/physics/stability/table.csv --overwrite`.
 
 mod advice;
 mod theory;
@@ -19,7 +19,7 @@ use crate::common::*;
 
 const RENEW: &str = "cargo run --release -- stability --quick --table tests/physics/stability/table.csv --overwrite";
 
-/// Challenges that no contender fails: what was feared of them does not happen here.
+/// Challenges that no variant fails.
 const UNBROKEN: [&str; 1] = ["rest"];
 
 fn quick() -> &'static StabilityTable {
@@ -85,7 +85,7 @@ fn every_scene_breaks_a_method_at_its_last_level_and_none_at_its_first() {
     }
 }
 
-/// Speed that is left after a few solved steps, in √(g d).
+/// Remaining speed after a few solved steps, in √(g d).
 const STILL: f64 = 1e-7;
 
 fn solved(mut scene: Scene) -> Simulation {
@@ -96,7 +96,7 @@ fn solved(mut scene: Scene) -> Simulation {
     start(&scene)
 }
 
-/// Steps, each of them solved, to rest without a contact lost.
+/// Steps to rest; each step must be solved, and no contact may be lost.
 fn stays(mut run: Simulation, what: &str) {
     let contacts = {
         assert!(error_against_model(&run) < 1e-4, "{what}");
@@ -122,7 +122,7 @@ fn the_lattice_is_hyperstatic_and_at_rest_however_little_its_normals_are_off() {
         let mut first = start(&scene);
         let contacts = first.step().expect("a finite state").contacts;
         assert_eq!(scene.grains.len(), 1314);
-        // Pairs in long and in short rows, 72 in each of 35 gaps between rows, the floor, and two walls.
+        // Pairs in long and short rows; 72 in each of the 35 gaps between rows; the floor; and two walls.
         let beside = 18 * 36 + 18 * 35;
         assert_eq!(contacts, beside + 35 * 72 + 37 + 2 * 18, "{perturbation}");
         stays(solved(scene), &format!("displaced by {perturbation} d"));
@@ -139,7 +139,7 @@ fn heaps_of_any_size_are_at_rest() {
     assert_eq!(heap_of(10_000).grains.len(), 9870);
 }
 
-/// Overlap that pushing out leaves, in d.
+/// Overlap that remains after pushing out, in d.
 const LEFT: f64 = 2e-4;
 
 #[test]
@@ -192,7 +192,7 @@ fn a_step_in_pieces_is_one_step_that_keeps_the_balance_of_energy() {
     scene.parameters.time_step_secs = 0.02;
     scene.remedies.max_travel = 0.1;
     let mut run = start(&scene);
-    // What it weighs times how far it falls: all its energy.
+    // The weight times the height of fall: all its energy.
     let scale = run.observables().potential_energy;
     let (mut energy, mut touched) = (0.0, false);
     for step in 1..=30 {
@@ -217,7 +217,7 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
         let travel = scene.gravity.magnitude() * 0.1 * 0.1 / scene.mean_diameter;
         let mut sweeps_in = |pieces: f64| {
             scene.remedies.max_travel = travel / (pieces - 0.5);
-            // Whatever is asked of them, solves are short.
+            // Solves are short for every method.
             scene.solver = SolverSettings { max_sweeps: 1, ..solved_by(Method::Nsgs, 1e-9) };
             start(&scene).step().expect("a finite state").sweeps
         };
@@ -227,9 +227,9 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
     }
 }
 
-/// What no remedy mends: places that have no digits left (so far out they are 2·10⁻³ d apart), and
-/// contacts that slide open. Each step along a curved surface opens a gap by (Δt v_t)²/2d; below the
-/// tolerance it is neither closed nor does it count, until all contacts are beyond it at once.
+/// Failures that no remedy mends. So far from the origin that places are 2·10⁻³ d apart, numbers lack digits. And
+/// contacts slide open: each step along a curved surface opens a gap by (Δt v_t)²/2d. Below the tolerance the gap is
+/// neither closed nor does it count, until all contacts exceed it at once.
 const UNMENDED: [(&str, f64); 2] = [("far", 1e13), ("moving-walls", 2e-2)];
 
 #[test]
@@ -241,7 +241,7 @@ fn the_robust_preset_holds_everywhere_but_where_nothing_could() {
     }
 }
 
-/// The kinds of alarms of a run, and what they say.
+/// The alarms of a run: kinds and messages.
 fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
     let mut run = start(scene);
     for _ in 0..steps {
@@ -272,7 +272,7 @@ fn a_hundred_steps_at_the_sweep_limit_are_told_of_and_ninety_nine_are_not() {
     let mut scene = mass_ratio(1e3);
     scene.solver.max_sweeps = 2;
     scene.solver.tolerance = 1e-15;
-    // Newton's method is of Coulomb's law, which the default does not solve.
+    // Newton's method solves Coulomb's law, which the default here does not.
     for (method, advice) in
         [(Method::Auto, "more than 2 sweeps"), (Method::Nsgs, "more than 2 sweeps")]
     {
@@ -300,7 +300,7 @@ fn a_state_that_is_not_finite_is_told_of_with_what_helps() {
     assert!(words.contains("try 0 substeps"), "{words}");
 }
 
-/// A scene whose bonds break fast, by the law `range`.
+/// A scene whose bonds break fast under `range`.
 fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
     scene.stepper = Stepper::Range;
     scene.solver.method = Method::Newton;
@@ -315,7 +315,7 @@ fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
 
 #[test]
 fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not() {
-    // Runs until bonds have broken, or for 0.1 s: what it says of breaks, and whether there were any.
+    // Runs until bonds have broken, or for 0.1 s. Returns the alarms about breaks, and true if bonds broke.
     let run = |scene: &Scene| {
         let mut simulation = start(scene);
         let mut broken = 0.0;
@@ -337,7 +337,7 @@ fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not()
     assert!((longest - 6.4 * bond_time).abs() < 1e-12, "{longest}");
     let words = said[0].message(&long.settings());
     assert!(words.contains("time step of at most 4.5e-4 s"), "{words}");
-    // At that step breaks are seen; without bonds, and where none is about to break, there is nothing to see.
+    // At that step breaks are resolved. Without bonds, or if none is about to break, nothing needs to be resolved.
     assert_eq!(run(&brittle(pile.clone(), 20.0, 4.5e-4)), (Vec::new(), true));
     assert_eq!(run(&brittle(pile, 0.0, 5e-3)), (Vec::new(), false));
     assert_eq!(run(&brittle(heap(5), 20.0, 5e-3)), (Vec::new(), false));
@@ -345,7 +345,7 @@ fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not()
 
 #[test]
 fn a_grain_that_falls_out_of_the_world_is_told_of() {
-    // Off the end of a base that is finite.
+    // Grains fall off the end of a finite base.
     let mut scene = heap(3);
     scene.grains[0].position.x += 100.0 * scene.mean_diameter;
     scene.fixed_discs.truncate(3);

@@ -1,4 +1,4 @@
-//! Borders that theory gives, and what models of friction do to what slides, against what is measured.
+//! Theoretical limits, and the effect of friction models on sliding bodies, against measurements.
 
 use slump::scene::stability::{
     FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, blow, breaking_bond_of_cantilever, cantilever,
@@ -9,7 +9,7 @@ use slump::study::stability::contraction_of_column;
 
 use crate::common::*;
 
-/// Steps until a column sinks steadily: each leaves a tenth or less of the one before.
+/// Number of steps until a column sinks steadily: each step reduces the rest to a tenth or less.
 const STEADY: usize = 40;
 
 fn cold(sweeps: u32) -> SolverSettings {
@@ -21,7 +21,7 @@ fn cold(sweeps: u32) -> SolverSettings {
     }
 }
 
-/// Steady speed of the last grain, in g Δt, where each step gets so many sweeps from nothing.
+/// Steady speed of the last grain, in g Δt, with this many sweeps from zero impulses per step.
 fn sinking_speed(mut scene: Scene, sweeps: u32) -> f64 {
     scene.solver = cold(sweeps);
     let run = after(&scene, STEADY);
@@ -44,7 +44,7 @@ fn a_column_sinks_less_with_more_sweeps_as_theory_says() {
             let ratio = found / expected;
             assert!((0.9..1.1).contains(&ratio), "{count} discs, {sweeps} sweeps: {ratio}");
         }
-        // The rate itself, free of the mode's amplitude.
+        // The rate itself, independent of the mode's amplitude.
         let sweeps = 2 * (count * count) as u32;
         let speeds =
             [sweeps, sweeps + 50].map(|sweeps| sinking_speed(column_on_line(count), sweeps));
@@ -82,9 +82,9 @@ fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
     }
 }
 
-/// At ρ = 1 the contact that is hit asks for v₂ − v₁ = v, all others for no motion. With what the
-/// balls share after it, u, momentum says u − v + (n − 1) u = v: they leave with 2v/n, and the first
-/// one bounces back. Momentum and energy are kept, and yet no cradle does that.
+/// At ρ = 1 the struck contact requires v₂ − v₁ = v, all others require no relative motion. If the balls behind it
+/// move with u, momentum gives u − v + (n − 1) u = v: they leave with 2v/n, and the first one bounces back. Momentum
+/// and energy are conserved, and yet no real cradle behaves so.
 #[test]
 fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     for count in [2, 3, 5, 20] {
@@ -103,7 +103,7 @@ fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     }
 }
 
-/// A column of springs with one substep a step, `part` of the critical one long.
+/// A column of springs with one substep per step, of `part` times the critical length.
 fn springs(part: f64) -> Simulation {
     let mut scene = column_on_line(12);
     scene.parameters.restitution = 0.5;
@@ -186,7 +186,7 @@ fn numbers() -> [f64; 4] {
     [speed, scene.parameters.friction, scene.gravity.magnitude(), scene.mean_diameter]
 }
 
-/// The way from the start to where the disc has been still for long.
+/// Distance from the start to the place at which the disc stays.
 fn way(run: &mut Simulation) -> glam::DVec2 {
     let [speed, friction, gravity, _] = numbers();
     let start = run.place(0);
@@ -261,13 +261,13 @@ fn desaxce_sinks_what_slides_by_the_way_of_a_step_times_friction() {
         let right = friction * speed * time_step_secs;
         let once = sunk(1);
         assert!((once / right - 1.0).abs() < 1e-6, "{time_step_secs} s: {once} for {right}");
-        // A solve leaves μ²/(1 + μ²), a fifth, of what the one before it left.
+        // Each solve leaves μ²/(1 + μ²), a fifth, of the previous error.
         let fourth = sunk(4);
         assert!((0.0..0.02 * right).contains(&fourth), "{time_step_secs} s: {fourth} of {right}");
     }
 }
 
-/// Speed of both discs along the floor, their total way along it, and whether the blow has come.
+/// Speed of both discs along the floor, the sum of their distances along it, and true after the blow.
 fn along_the_floor(run: &Simulation) -> (f64, f64, bool) {
     let grains = run.grains();
     let mass: f64 = grains.masses.iter().sum();
@@ -288,7 +288,7 @@ fn a_blow_on_what_slides_takes_speed_by_impulse_balance() {
     assert!(taken > 0.1 * before && taken < 0.9 * before, "it is seen, and they go on sliding");
     let ways = [
         (Method::Newton, FrictionModel::Coulomb, 1e-8),
-        // So near do fifty sweeps come to what presses; of the step before they would know nothing.
+        // Fifty sweeps estimate the pressing force this well. The previous step could not know about it.
         (Method::InteriorPoint, FrictionModel::Tresca, 0.01 * taken),
         (Method::Nsgs, FrictionModel::Tresca, 0.01 * taken),
     ];

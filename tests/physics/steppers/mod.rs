@@ -1,4 +1,4 @@
-//! The steppers beside the paper's: `range`, `tgs-soft`, `avbd` and `dem`, and what all have in common.
+//! The steppers other than the paper's (`range`, `tgs-soft`, `avbd`, `dem`), and properties of all steppers.
 
 mod own_laws;
 mod range;

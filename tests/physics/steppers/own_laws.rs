@@ -1,4 +1,4 @@
-//! Laws of one's own (`Stage::prepare_within`): one of finite range that goes by the gap.
+//! A user's own law (`Stage::prepare_within`): cohesion of finite range as a function of the gap.
 
 use crate::common::*;
 use slump::sim::{Advance, Stage, StepResult};
@@ -20,16 +20,16 @@ impl Advance for Wet {
     }
 }
 
-/// What a grain is near.
+/// The body next to a grain.
 #[derive(Clone, Copy, Debug)]
 enum Near {
     Disc,
     Wall,
-    /// A disc beyond a border of a periodic cell.
+    /// A disc across a border of a periodic cell.
     Image,
 }
 
-/// Velocity away from what a grain is near, after a step that begins with a gap and a speed away from it, m/s.
+/// Velocity away from the body next to a grain after one step, m/s, from an initial gap and speed.
 fn after_a_step(near: Near, gap: f64, speed: f64, time_step_secs: f64, physics: Physics) -> f64 {
     const CELL: f64 = 20.0 * RADIUS;
     let (place, away, disc, boundaries, periodic) = match near {
@@ -46,7 +46,7 @@ fn after_a_step(near: Near, gap: f64, speed: f64, time_step_secs: f64, physics: 
         }
     };
     let grain = moving(place * DVec2::X, RADIUS, away * speed * DVec2::X);
-    // Gravity that the grain does not feel says what Bond means.
+    // Gravity, which the grain does not feel, defines the meaning of Bond.
     let grains = vec![Grain { feels_gravity: false, ..grain }];
     let mut run = start(&Scene {
         fixed_discs: disc.then(|| fixed(DVec2::ZERO, RADIUS)).into_iter().collect(),

@@ -1,18 +1,18 @@
-//! The law `range` (`contact::range`): one bond by itself against its exact motion.
+//! The law `range` (`contact::range`): a single bond against its exact motion.
 
 use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
-/// Two decades about the time that a bond takes to break, which is 0.7 ms at Bond 20.
+/// Two decades around the time in which a bond breaks, which is 0.7 ms at Bond 20.
 const TIME_STEPS: [f64; 7] = [5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
-/// A grain that leaves a fixed disc with a speed (m/s), under a load (m/s²) that pulls it away; C₀ is
-/// that of Bond [`BOND`] under g, whatever the load.
+/// A grain that leaves a fixed disc with a speed (m/s) under a load (m/s²) that pulls it away. C₀ is that of Bond
+/// [`BOND`] under g, for every load.
 fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulation {
     let direction = DVec2::X;
     let grain = moving(2.0 * RADIUS * direction, RADIUS, speed * direction);
-    // The norm of gravity gives C₀, so Bond is what makes it BOND·G under any load.
+    // C₀ depends on the norm of gravity; this Bond makes it BOND·G under every load.
     let (gravity, bond) = if load == 0.0 { (G, BOND) } else { (load, BOND * G / load.abs()) };
     let feels_gravity = load != 0.0;
     start(&Scene {
@@ -28,7 +28,7 @@ fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulat
     })
 }
 
-/// v of a grain that has come as far as three bonds are long, or none where it stays at the disc.
+/// Speed of a grain at a distance of three bond lengths, or `None` if it stays at the disc.
 fn speed_far_away(mut run: Simulation) -> Option<f64> {
     let far = 2.0 * RADIUS * (1.0 + 3.0 * DISTANCE_IN_DIAMETERS);
     let steps = (0.1 / run.parameters().time_step_secs) as usize;
@@ -76,16 +76,16 @@ fn the_static_pull_off_force_is_the_cohesion_at_every_time_step() {
 
 #[test]
 fn a_bond_that_holds_a_load_at_rest_asks_for_no_substeps_and_breaks_where_its_strength_ends() {
-    // Longer than the time of a break, 0.7 ms: what is cut here is cut into four.
+    // Longer than the time of a break, 0.7 ms: such a step is cut into four.
     let time_step_secs = 1e-3;
-    // More than half of the strength, so that only standing still tells it from a bond that is about to break.
+    // More than half of the strength, so that only standing still distinguishes it from a bond that is about to break.
     let load = 0.75 * BOND * G;
     let mut run = pair(time_step_secs, 0.3 * (2.0 * work()).sqrt(), load, LINE);
     take_steps(&mut run, 1);
     assert!(run.observables().sweeps > 4, "one in which a bond so loaded opens is cut");
     take_steps(&mut run, 20);
     assert!(run.observables().sweeps < 4, "one that stands is not");
-    // C₀ in the grain's weight, which is its load.
+    // C₀ in units of the grain's weight, which is its load.
     let mut parameters = *run.parameters();
     while parameters.bond > 0.5 && run.velocity(0).x < 1e-3 {
         parameters.bond *= 0.999;
@@ -103,7 +103,7 @@ fn a_load_that_breaks_a_bond_gives_it_just_its_work() {
         while run.place(0).x < 3.0 * RADIUS {
             take_steps(&mut run, 1);
         }
-        // The bond pulls with C₀ until the pair has opened by δ_c, and no longer.
+        // The bond pulls with C₀ until the pair has opened by δ_c.
         let opened = DISTANCE_IN_DIAMETERS * 2.0 * RADIUS;
         let time = (2.0 * opened / ((factor - 1.0) * BOND * G)).sqrt();
         let at = run.time_secs();
@@ -176,7 +176,7 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
         let kept = if factor > 1.0 { mass * work() } else { 0.0 };
         assert_close(broken, kept, 1e-9, "kept by the bond");
         assert_eq!(run.observables().bond_energy, Some(0.0));
-        // At short steps the way out is seen.
+        // Short steps resolve the opening.
         let bond_time = (2.0 * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS / (BOND * G)).sqrt();
         if factor < 1.0 && time_step_secs < 0.2 * bond_time {
             assert!(most > 0.8 * begun, "stored {most} of {begun} J");
@@ -184,14 +184,14 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
     }
 }
 
-/// The part of ω_c = √(C₀/(m_ij L)), at which the bond holds the circle, from which on a pair that turns as one
-/// tears it. The pull is C₀ until δ_c, and L²ω is kept: it opens to L(1 + δ) where
-/// ½ω²L²(1 − (1 + δ)⁻²) = (C₀/m_ij)Lδ.
+/// Fraction of ω_c = √(C₀/(m_ij L)), the spin at which the bond holds the circle, above which a pair that turns as
+/// one body tears the bond. The pull is C₀ up to δ_c, and L²ω is conserved: the pair opens to L(1 + δ) if ½ω²L²(1 −
+/// (1 + δ)⁻²) = (C₀/m_ij)Lδ.
 fn tearing_part(delta: f64) -> f64 {
     (2.0 * delta / (1.0 - (1.0 + delta).powi(-2))).sqrt()
 }
 
-/// True if two grains of these radii, bonded and turning as one with a part of ω_c, are together after two turns.
+/// True if two bonded grains of these radii that turn as one body at `part` of ω_c are still together after two turns.
 fn circling_pair_holds(
     part: f64,
     [bond, time_step_secs, size]: [f64; 3],
@@ -224,7 +224,7 @@ fn a_pair_that_circles_holds_up_to_the_speed_at_which_its_bond_tears() {
             for size in [1.0, 0.4] {
                 for time_step_secs in TIME_STEPS {
                     let numbers = [bond, time_step_secs, size];
-                    // Beyond 6.4 times of a break sixteen substeps do not see it, and the step says so.
+                    // Above 6.4 break times sixteen substeps do not resolve the break, and the step reports it.
                     let bond_time = (4.0 * DISTANCE_IN_DIAMETERS * RADIUS / (bond * G)).sqrt();
                     let below = if time_step_secs < 6.4 * bond_time { 0.99 } else { 0.98 };
                     assert!(circling_pair_holds(below, numbers, physics), "{numbers:?} at {below}");
@@ -241,7 +241,7 @@ fn a_pair_that_circles_holds_up_to_the_speed_at_which_its_bond_tears() {
 
 #[test]
 fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
-    // How fast the disc goes along with the grain, which it does at 1 m/s; whether that is taken for a circle.
+    // True if the grain, which moves at 1 m/s along a disc with this speed, is treated as circling.
     let circles = |disc_speed: f64| {
         let direction = DVec2::Y;
         let course = MotionCourse::Straight { direction, speed: disc_speed, travel: None };
@@ -268,7 +268,7 @@ fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
     assert!(!circles(1.0));
 }
 
-/// A pile that falls together and bonds.
+/// A pile that falls together and forms bonds.
 fn pile(bond: f64, time_step_secs: f64, method: Method) -> Scene {
     let parameters =
         Parameters { restitution: 0.1, restitution_threshold: 2.0, ..range(bond, time_step_secs) };
@@ -336,8 +336,8 @@ fn the_paper_s_law_tells_nothing_of_bonds() {
     assert!(!serde_json::to_string(now).expect("numbers").contains("bond_"));
 }
 
-/// How many steps of a pile that falls together Newton's method and another have both solved, of those that were looked
-/// at, and in how many of these the velocities after them are alike.
+/// Number of steps of a collapsing pile that both Newton's method and another method have solved, and the number of
+/// those whose final velocities agree.
 fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
     let parameters =
         Parameters { restitution: 0.1, restitution_threshold: 2.0, friction, ..range(20.0, 2e-4) };
@@ -366,12 +366,12 @@ fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
     counts
 }
 
-/// Steps that are looked at in each pile.
+/// Number of steps compared in each pile.
 const MOMENTS: u32 = 12;
 
-/// Not in all: Coulomb's law may have several solutions, and then it hangs on the method which is found; and where shocks have
-/// more contacts than they need, how their impulses are shared out decides which bond goes first. Who solves another
-/// law has next to none alike.
+/// Methods need not agree on all steps. Coulomb's law may have several solutions, and the method decides which is
+/// found. If shocks have more contacts than they need, the distribution of their impulses decides which bond breaks
+/// first. Methods that solve another law agree on next to none.
 #[test]
 fn methods_agree_on_nearly_all_steps_with_bonds() {
     for (method, (friction, least_share)) in
@@ -379,14 +379,14 @@ fn methods_agree_on_nearly_all_steps_with_bonds() {
     {
         let counts = (1..=8).map(|seed| solved_and_alike(seed, friction, method));
         let [solved, alike] = counts.fold([0; 2], |sum, more| [0, 1].map(|at| sum[at] + more[at]));
-        // What is left unsolved within the sweeps allowed tells nothing of agreement.
+        // Steps that are unsolved within the allowed sweeps say nothing about agreement.
         assert!(2 * solved > 8 * MOMENTS, "{method:?}, μ = {friction}: {solved} solved");
         let share = f64::from(alike) / f64::from(solved);
         assert!(share >= least_share, "{method:?}, μ = {friction}: {alike} of {solved} alike");
     }
 }
 
-/// Half the steps of a pile that slumps at Δt = 5e-3 s are left unsolved under Coulomb's law.
+/// At Δt = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb's law.
 #[test]
 fn under_bounds_of_friction_no_piece_of_a_step_is_left_unsolved() {
     let run = |bond: f64, time_step_secs: f64, solver: SolverSettings| {

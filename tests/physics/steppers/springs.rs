@@ -1,4 +1,5 @@
-//! The stepping scheme `dem`: springs and dashpots, the numbers that set them, and the step at which they blow up.
+//! The stepping scheme `dem`: springs and dashpots, the numbers that define them, and the time step at which they
+//! become unstable.
 
 use slump::error::Error;
 
@@ -10,7 +11,8 @@ fn springs(run: &Simulation) -> SpringDashpot {
     SpringDashpot::of(run.world(), physics.axes, run.parameters())
 }
 
-/// Steps until two discs that meet have parted: for how long they pushed, s, and speed after over speed before.
+/// Steps until two colliding discs have separated. Returns the duration of the contact, s, and the ratio of final to
+/// initial speed.
 fn until_parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     let (before, carried) = (relative_velocity(&run), momentum(&run));
@@ -51,7 +53,7 @@ fn springs_and_dashpots_give_the_restitution_that_is_asked_for() {
     }
 }
 
-/// True if a pair that rests at its cohesive overlap shakes itself up from a small push.
+/// True if a small push makes a pair oscillate ever more around its cohesive overlap.
 fn shakes_up(restitution: f64, dt_over_critical: f64) -> bool {
     let probe = start(&meeting(LINE, restitution, 1e-3));
     let (mass, springs) = (effective_mass(&probe), springs(&probe));
@@ -86,7 +88,7 @@ fn a_pair_of_elements_blows_up_above_its_critical_step_and_not_below() {
 
 #[test]
 fn a_step_that_blows_up_ends_in_an_error() {
-    // Between walls the disc cannot get away from its own energy.
+    // Between walls the disc cannot escape with its energy.
     let mut scene = meeting(LINE, 0.5, 1e-3);
     scene.grains.truncate(1);
     let wall = |x: f64| plane(x * DVec2::X, -x * DVec2::X);
@@ -102,7 +104,7 @@ fn a_step_that_blows_up_ends_in_an_error() {
             assert_eq!(matches!(failure, Some(Error::NonFinite { .. })), blows_up, "{failure:?}");
         }
     }
-    // A pile blows up too, and comes to an end without a panic, finite or not.
+    // A pile becomes unstable too, and ends without a panic, with finite numbers or not.
     let energies = |now: &Observables| [now.kinetic_energy, now.potential_energy];
     let mut pile = by(Stepper::Dem, 1, paper_pile().expect("the shipped state"));
     pile.parameters.time_step_secs = 2e-3;
@@ -159,7 +161,7 @@ fn what_is_left_open_is_what_it_was_and_what_is_given_sets_the_substeps() {
     assert!(critical(stiffness, 10.0).0 < 0.5 * secs, "a stronger dashpot");
 }
 
-/// How long two discs that meet push each other, s, and the speed after over that before.
+/// Contact time of two colliding discs, s, and the ratio of final to initial speed; each found, then expected.
 fn collision(physics: Physics, stiffness: f64, damping_ratio: f64, parts: f64) -> [f64; 4] {
     let mut scene = by(Stepper::Dem, 1, meeting(physics, 0.1, 1e-3));
     scene.parameters.stiffness = stiffness;
@@ -207,8 +209,8 @@ fn the_contact_time_that_is_told_is_that_of_two_mean_grains() {
     }
 }
 
-/// Two equal grains that rest in their bond and are thrown apart: energy of their relative motion that they lose
-/// until they are far apart (J), or none where they stay together.
+/// Two equal grains at rest in their bond that are thrown apart. Returns the energy of their relative motion that
+/// they lose until they are far apart (J), or `None` if they stay together.
 fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     scene.grains[1].velocity.x = speed;
     let mut run = start(&scene);
@@ -225,7 +227,7 @@ fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     None
 }
 
-/// The pair at rest in its bond, with steps that are short for its springs.
+/// The pair at rest in its bond, with time steps that are short for its springs.
 fn bonded(stepper: Stepper, damping_ratio: f64) -> Scene {
     let bond = 20.0;
     let at = |x| weightless(moving(DVec2::new(x, 0.0), RADIUS, DVec2::ZERO));
@@ -285,7 +287,7 @@ fn a_dashpot_lets_a_fast_pair_lose_twice_that_work_and_none_more() {
     }
 }
 
-/// The work (J) that the contact takes from a hand that pulls a pair apart within 2000/ω₀, and C₀²/2k.
+/// Work (J) that a contact takes while a pair is pulled apart within 2000/ω₀, and C₀²/2k.
 fn pulled_apart(damping_ratio: f64) -> [f64; 2] {
     let grain = weightless(Grain::at_rest(DVec2::new((2.0 - REST) * RADIUS, 0.0), RADIUS));
     let mut scene = scene(LINE, G * DVec2::X, parameters(1.0, 1e-4, 1.0, 0.0), vec![grain]);
@@ -299,7 +301,7 @@ fn pulled_apart(damping_ratio: f64) -> [f64; 2] {
     let mut run: Simulation = start(&by(Stepper::Dem, 1, scene.clone()));
     let (from, mut done) = (run.place(0), 0.0);
     loop {
-        // Far enough to pull with C₀ at the end: a diameter pulls with forty weights.
+        // Far enough for the hand to pull with C₀ at the end: a distance of a diameter pulls with forty weights.
         let part = run.time_secs() / (2000.0 * unit);
         let target = from + DVec2::X * part * 2.0 * RADIUS / 40.0;
         run.set_pull(Some(Pull { grain: 0, target }));

@@ -1,5 +1,6 @@
-//! Commands of the documents: each is one that the program takes. A block of the book that begins with ```sh alone has quick
-//! ones, and all of them run, in a folder of the page, from the first to the last; one of others says ```sh slow.
+//! Commands in the documentation: the program accepts each. Blocks that begin with ```sh have quick commands, which
+//! all run in
+//! order, in one folder per page; blocks that begin with ```sh slow are only parsed.
 
 use std::time::Instant;
 
@@ -8,10 +9,10 @@ use slump::world::{GravityTurn, Motion, Periodic};
 use super::{blocks, book, pages, root};
 use crate::program::*;
 
-/// All quick commands together.
+/// Longest time of all quick commands together.
 const MOST_TIME: Duration = Duration::from_secs(60);
 
-/// The words of the program's command in a line, without its name; none where it calls others.
+/// The arguments of a line that calls the program; `None` if it calls another program.
 fn command_in(line: &str) -> Option<Vec<String>> {
     let words = shlex::split(line).unwrap_or_else(|| panic!("{line}"));
     let end = words.iter().position(|word| matches!(word.as_str(), "|" | ";" | ">" | "&&"));
@@ -23,13 +24,13 @@ fn command_in(line: &str) -> Option<Vec<String>> {
     Some(words.split_off(at + 1))
 }
 
-/// The commands of a block, lines that end in a backslash joined.
+/// The commands of a block, with lines that end in a backslash joined.
 fn lines_of(lines: &[&str]) -> Vec<String> {
     let text = lines.join("\n").replace("\\\n", " ");
     text.lines().map(str::to_owned).filter(|line| !line.trim().is_empty()).collect()
 }
 
-/// What the program says against words after its name.
+/// The program's error message for these arguments, if there is one.
 fn refusal(words: Vec<String>) -> Option<String> {
     let words = std::iter::once("slump".to_owned()).chain(words);
     let error = slump::cli::command().try_get_matches_from(words).err()?;
@@ -78,7 +79,7 @@ fn commands_of_reports_are_taken_and_name_no_folder_of_a_machine() {
     assert!(reports > 15, "{reports} reports");
 }
 
-/// What a page shows of a scene file.
+/// Part of a scene file that a page shows.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PartOfScene {

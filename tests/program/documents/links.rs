@@ -1,11 +1,11 @@
-//! Links lead somewhere, and numbers that link into a report are those of the report.
+//! Links lead to existing targets, and checked numbers equal those of their reports.
 
 use serde_json::Value;
 
 use super::{pages, root};
 use crate::program::{json, read};
 
-/// The links of a page: text and target. Blocks of code have none.
+/// The links of a page outside code blocks: text and target.
 fn links(text: &str) -> Vec<(&str, &str)> {
     let prose = text.split("```").step_by(2);
     let found = prose.flat_map(|prose| {
@@ -17,7 +17,7 @@ fn links(text: &str) -> Vec<(&str, &str)> {
     found.collect()
 }
 
-/// The name of a heading in links, as GitHub makes it.
+/// The anchor of a heading, as GitHub makes it.
 fn anchor(heading: &str) -> String {
     let heading = heading.trim_start_matches('#').trim().to_lowercase();
     let kept = heading.chars().filter(|it| it.is_alphanumeric() || matches!(it, ' ' | '-' | '_'));
@@ -50,14 +50,14 @@ fn checked_numbers(text: &str) -> Vec<CheckedNumber<'_>> {
     found
 }
 
-/// The part of a block that a reader sees.
+/// A block without its comments, as a reader sees it.
 pub(super) fn without_comments(block: &str) -> String {
     let mut parts = block.split("<!--");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |text, part| text + part.split_once("-->").map_or("", |(_, after)| after))
 }
 
-/// True where a number is printed as a report has it, to the digits that are shown: `−.25`, `+0.3`, `49`, `1.2e-3`.
+/// True if a number is printed as in the report, to the digits shown: `−.25`, `+0.3`, `49`, `1.2e-3`.
 fn is_printed(text: &str, value: &Value) -> bool {
     let Some(number) = value.as_f64() else { return value.as_str() == Some(text) };
     let plain = text.replace('−', "-").replace('+', "");
@@ -70,7 +70,7 @@ fn is_printed(text: &str, value: &Value) -> bool {
     rounded.parse::<f64>().ok() == plain.parse().ok()
 }
 
-/// What stands below a heading, up to the next one.
+/// The text below a heading, up to the next heading.
 fn section(text: &str, name: &str) -> String {
     let lines = text.lines().skip_while(|it| !(it.starts_with('#') && anchor(it) == name));
     lines.skip(1).take_while(|it| !it.starts_with('#')).collect::<Vec<_>>().join("\n")
@@ -130,7 +130,7 @@ fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
     assert!(numbers > 100, "{numbers} numbers of reports");
 }
 
-/// Width of a page, pixels.
+/// Largest width of a picture on a page, pixels.
 const MOST_WIDTH: u32 = 1_200;
 
 #[test]

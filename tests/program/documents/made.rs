@@ -1,5 +1,5 @@
-//! Parts of the book that are made of what the program declares, between `<!-- made: NAME -->` and `<!-- end -->`.
-//! `SLUMP_BLESS=1 cargo test --release --test program documents` makes them anew.
+//! Parts of the documentation that are generated from the program's declarations, between `<!-- made: NAME -->` and
+//! `<!-- end -->`. `SLUMP_BLESS=1 cargo test --release --test program documents` regenerates them.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use slump::sim::{AlarmKind, Settings};
 use super::{book, root};
 use crate::program::{Command, folder, json, read, run, said, sentence, slump, succeed, write};
 
-/// A part's name, and what makes it.
+/// The name of a part, and the function that generates it.
 type Part = (&'static str, fn() -> String);
 
 const PARTS: [Part; 4] =
@@ -22,7 +22,7 @@ fn begin(name: &str) -> String {
     format!("<!-- made: {name} -->\n")
 }
 
-/// A page with its made parts replaced.
+/// A page with its generated parts replaced.
 fn with_parts(text: &str, part: impl Fn(&str, fn() -> String) -> String) -> String {
     PARTS.iter().fold(text.to_owned(), |text, (name, make)| {
         let Some((before, rest)) = text.split_once(&begin(name)) else { return text };
@@ -31,7 +31,7 @@ fn with_parts(text: &str, part: impl Fn(&str, fn() -> String) -> String) -> Stri
     })
 }
 
-/// A page without what is made, which nobody reads from the first line to the last.
+/// A page without its generated parts, which nobody reads from the first line to the last.
 pub(super) fn without_tables_of_declarations(text: &str) -> String {
     with_parts(text, |_, _| String::new())
 }
@@ -91,7 +91,7 @@ fn option_row(arg: &Arg) -> String {
     format!("| `{}`{aliases} | {help} |\n", cell(&name))
 }
 
-/// Tables of a command's options, by heading; those of `known` are told of elsewhere.
+/// Tables of a command's options, by heading. The options in `known` are left out, because another table has them.
 fn tables_of(command: &clap::Command, known: &[String]) -> String {
     let is_told = |arg: &&Arg| {
         let name = arg.get_id().as_str();
@@ -147,7 +147,7 @@ fn commands() -> String {
     text
 }
 
-/// The tables of a scene file that have settings, and what is in them.
+/// The tables of a scene file that have settings, with their contents.
 fn tables(settings: &Settings) -> [(&'static str, Value); 4] {
     let Settings { stepper, parameters, solver, remedies } = settings;
     let stepper = serde_json::json!({ "stepper": stepper });
@@ -165,7 +165,7 @@ fn tables(settings: &Settings) -> [(&'static str, Value); 4] {
     ]
 }
 
-/// Where a scene file has a setting: its table and its name there.
+/// The table of a scene file that has a setting, and its name there.
 fn place_in_scene_file(name: &str, kind: Kind) -> (&'static str, String) {
     use slump::setting::Value as Setting;
     let others = match kind {
@@ -218,7 +218,7 @@ fn columns() -> String {
     text
 }
 
-/// The variants that the page has room for.
+/// The solver variants in the page's table.
 const VARIANTS: [&str; 11] = [
     "default",
     "nsgs",
@@ -289,7 +289,7 @@ fn shells_and_man_can_read_what_the_program_says_of_itself() {
     let folder = folder();
     let file = folder.path().join("slump.bash");
     write(&file, printed("completions bash"));
-    // What the shell offers where the line ends so.
+    // The shell's completions of a line that ends so.
     let offered = |line: &str, last: &str| {
         let script = format!(
             "source '{}'; COMP_WORDS=({line} '{last}'); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
@@ -306,7 +306,7 @@ fn shells_and_man_can_read_what_the_program_says_of_itself() {
     assert!(printed("completions fish").contains("checkpoint-every"));
     assert!(printed("completions zsh").starts_with("#compdef slump"));
 
-    // Whether the help is short or long, the page has each option with what it does.
+    // The page describes each option, whether its help is short or long.
     let page = printed("man run");
     for about in ["Make a new pile", "Start the pile from discs", "a scene file", "[pile: "] {
         assert!(page.contains(about), "{about} in {page}");

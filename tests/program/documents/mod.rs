@@ -1,5 +1,5 @@
-//! The documents: links lead somewhere, numbers are those of the reports that they link to, commands are taken and quick ones
-//! run, what is made of declarations is today's, and pages are short.
+//! The documentation: links lead to existing targets, numbers equal those of their reports, the program accepts all
+//! commands and runs the quick ones, generated parts are up to date, and pages are short.
 
 mod commands;
 mod links;
@@ -19,7 +19,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The pages of the book.
+/// The pages of the documentation.
 fn book() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join("docs")).expect("the book");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -29,7 +29,7 @@ fn book() -> Vec<PathBuf> {
     pages
 }
 
-/// All pages that are for readers.
+/// All pages for readers.
 fn pages() -> Vec<PathBuf> {
     let others = [
         "README.md",
@@ -43,7 +43,7 @@ fn pages() -> Vec<PathBuf> {
     others.iter().map(|name| root().join(name)).chain(book()).collect()
 }
 
-/// Blocks of a page between lines of three backticks: what follows the first three, and the lines.
+/// Blocks of a page between lines of three backticks: the text after the first three, and the lines.
 fn blocks(text: &str) -> Vec<(&str, Vec<&str>)> {
     let mut blocks = Vec::new();
     let mut open: Option<(&str, Vec<&str>)> = None;

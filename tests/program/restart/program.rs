@@ -1,4 +1,4 @@
-//! Runs that are saved, stopped, killed and gone on with by the program, and the folders that they leave.
+//! Runs that the program saves, stops and resumes, or that are killed, and the folders that they leave.
 
 use std::collections::BTreeMap;
 
@@ -19,11 +19,11 @@ fn refusal(command: &mut Command) -> String {
     said
 }
 
-/// Every file of a folder; of the manifest what does not tell how the run came about.
+/// All files of a folder. The manifest is without its facts about the command and the interruptions.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let content = |name: String| (name.clone(), bytes(folder.join(name)));
     let mut files: BTreeMap<_, _> = names_in(folder).into_iter().map(content).collect();
-    // What was killed may leave its lock, which locks nothing then.
+    // A killed program may leave its lock file, which no longer locks anything.
     files.remove(".slump.lock");
     let manifest = files.get_mut("manifest.json").expect("a manifest");
     let mut said: Value = serde_json::from_slice(manifest).expect("JSON");
@@ -36,7 +36,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Checks that two folders hold the same, byte for byte.
+/// Checks that two folders contain the same bytes.
 #[track_caller]
 fn same(one: &Path, other: &Path, what: &str) {
     let (one, other) = (contents(one), contents(other));
@@ -69,7 +69,7 @@ fn a_saved_run_goes_on_as_if_it_had_never_ended() {
         assert_eq!([rows(&first), rows(&second)].concat(), rows(&whole), "{more:?}");
         let [whole, first, second] = [whole, first, second].map(|folder| contents(folder.path()));
         let frames = whole.keys().filter(|name| name.starts_with("frame_"));
-        // What else a file says is how it was asked for.
+        // The rest of a file describes its command.
         let pixels =
             |bytes: &Vec<u8>| image::load_from_memory(bytes).expect("a picture").to_rgba8();
         for name in frames.clone() {
@@ -77,7 +77,7 @@ fn a_saved_run_goes_on_as_if_it_had_never_ended() {
             assert!(pixels(half) == pixels(&whole[name]), "{more:?}: {name}");
         }
         assert_eq!(frames.count(), 11);
-        // The moment that both share is a picture of both.
+        // The common moment has a picture in both halves.
         let shared = [&first, &second].map(|half| pixels(&half["frame_00005.png"]));
         assert!(shared[0] == shared[1]);
         let tally = |files: &BTreeMap<String, Vec<u8>>| {
@@ -195,7 +195,7 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
             command.stdout(Stdio::null()).stderr(Stdio::null());
             command
         };
-        // The animation lies in the folder, so that it is compared, too. Its path is part of the command.
+        // The animation is in the folder, so it is compared too. Its path is part of the command.
         let begun = Instant::now();
         succeed(&mut arguments(whole.path()));
         let lasted = begun.elapsed();
@@ -205,7 +205,8 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
         let (mut kills, mut went_on) = (0, 0);
         loop {
             let mut child = arguments(stopped.path()).spawn().expect("the program starts");
-            // At first as soon as there is anything, then each time later, so that it gets to its end.
+            // The first kill comes as soon as there is a checkpoint, each following kill later, so that the run ends
+            // at last.
             if kills == 0 {
                 wait_for("a checkpoint", || stopped.path().join("checkpoint.slump").exists());
             } else {
@@ -216,12 +217,12 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
             let status = child.wait().expect("an end");
             assert!(!is_over || status.success(), "{name}: {status}");
             if !stopped.path().join("checkpoint.slump").exists() {
-                // It was complete, and may have been about to remove the rest when it was killed.
+                // The run was complete, and may have been removing the remaining files when it was killed.
                 let rest = std::fs::remove_file(stopped.path().join("checkpoint.states"));
                 assert!(rest.is_err() || !status.success(), "{name}: a rest is left");
                 break;
             }
-            // As if it had been killed while the animation was given its name.
+            // The state after a kill while the animation got its final name.
             write(stopped.path().join(".a.gif.Ab12Cd.part"), "half");
             went_on += 1;
             kills += 1;
@@ -247,7 +248,7 @@ fn means_of_a_recording_go_on_where_a_run_was_killed_between_two_frames() {
     wait_for("pictures", || stopped.path().join("frame_00003.png").exists());
     child.kill().expect("a child");
     child.wait().expect("an end");
-    // Rows that are lost are not written again, so the run is not resumed without them.
+    // Missing rows are not written again, so the run is not resumed without them.
     let steps = stopped.path().join("data/csv/steps.csv");
     let rows = bytes(&steps);
     write(&steps, &rows[..rows.len() / 8]);
@@ -255,7 +256,7 @@ fn means_of_a_recording_go_on_where_a_run_was_killed_between_two_frames() {
         let names =
             ["observables.csv", "data/frames.csv", "data/csv/grains.csv", "data/csv/steps.csv"];
         let mut there = names_in(stopped.path());
-        // The killed program left its lock.
+        // The killed program left its lock file.
         there.retain(|name| name != ".slump.lock");
         (there, names.map(|name| bytes(stopped.path().join(name))))
     };
@@ -285,7 +286,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     let (whole, stopped) = (folder(), folder());
     let line = PILE.replace("0.03", "100");
     succeed(&mut drawn(&line, whole.path()));
-    // It replaces the state that it has saved itself.
+    // The program may replace the state that it has saved itself.
     let of_state = folder();
     let saved = of_state.path().join("saved.slump");
     let mut run = drawn(&line, stopped.path());
@@ -296,7 +297,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     assert_eq!(ended(&mut child), Some(143));
     let step = manifest(stopped.path())["runs"][0]["step"].as_u64().expect("a step");
     assert!(step < 300, "it was stopped on the way");
-    // Without checkpoints, and with another number, the command is another one.
+    // Without checkpoints or with another number, it is another command.
     let other = refusal(drawn(&line, stopped.path()).args(["--mu", "0.4"]));
     assert!(
         other.contains("checkpoint.slump is there") && other.contains("another command"),
@@ -305,7 +306,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     let without =
         refusal(&mut drawn(PILE.split(" --checkpoint").next().expect("options"), stopped.path()));
     assert!(without.contains("unless --overwrite"), "{without}");
-    // What the checkpoint tells of must be there.
+    // Everything that the checkpoint records must exist.
     let (table, picture) =
         (stopped.path().join("observables.csv"), stopped.path().join("frame_00001.png"));
     let [rows, pixels] = [&table, &picture].map(bytes);
@@ -315,7 +316,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     std::fs::remove_file(&picture).expect("a file");
     assert!(refusal(&mut drawn(&line, stopped.path())).contains("frame_00001.png: is missing"));
     write(&picture, &pixels);
-    // What came after it, as where the run was killed later, goes.
+    // Later files, as after a kill at a later time, are removed.
     write(&table, [&rows[..], b"9,9,9\n9,"].concat());
     for left in ["frame_00099.png", ".checkpoint.slump.17-3.part"] {
         write(stopped.path().join(left), &pixels);
@@ -328,7 +329,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     same(whole.path(), stopped.path(), "after a signal");
     let went_on = &manifest(stopped.path())["runs"][0]["went_on_at"];
     assert_eq!(went_on[0]["step"].as_u64(), Some(step));
-    // What is complete does not go on.
+    // A complete run is not resumed.
     assert!(refusal(&mut drawn(&line, stopped.path())).contains("frame_00000.png is there"));
 }
 

@@ -1,4 +1,4 @@
-//! States in memory: every scene, stepper, method and remedy.
+//! States in memory: all scenes, steppers, methods and remedies.
 
 use rayon::prelude::*;
 use slump::setting::{Group, Kind, Value};
@@ -6,10 +6,10 @@ use slump::setting::{Group, Kind, Value};
 use super::{bytes_of, read_back};
 use crate::common::*;
 
-/// Steps before a state is saved, and after it.
+/// Number of steps before a state is saved, and after it.
 const STEPS: usize = 4;
 
-/// Takes a step of both, which may end in no finite state, and holds them to being the same.
+/// Takes a step of both and checks that they are equal, even if the step ends in a state that is not finite.
 #[track_caller]
 fn step_both(scene: &Scene, one: &mut Simulation, other: &mut Simulation, what: &str) {
     let ends = [&mut *one, other].map(|simulation| format!("{:?}", simulation.step().err()));
@@ -23,7 +23,7 @@ fn step_both(scene: &Scene, one: &mut Simulation, other: &mut Simulation, what: 
     );
 }
 
-/// Saves a run, reads it, and lets both go on, with `change` made to both first.
+/// Saves a run, reads it, applies `change` to the original and the copy, and compares their next steps.
 #[track_caller]
 fn goes_on_with(
     scene: &Scene,
@@ -53,7 +53,7 @@ fn goes_on(scene: &Scene, simulation: &Simulation, steps: usize, what: &str) -> 
     goes_on_with(scene, simulation, steps, what, |_| {})
 }
 
-/// A remedy at work.
+/// Settings with the remedy on.
 fn with(remedy: &Remedy) -> Remedies {
     let mut remedies = Remedies::default();
     let about = Remedies::ABOUT.iter().find(|about| about.name == remedy.name).expect("a setting");
@@ -65,7 +65,7 @@ fn with(remedy: &Remedy) -> Remedies {
     remedies
 }
 
-/// Every stepper and method, and, with the method of the scene alone, every remedy.
+/// Every stepper and method, and every remedy with the scene's own method.
 fn ways(scene: &Scene) -> Vec<Settings> {
     let mut base = scene.settings();
     base.solver.max_sweeps = base.solver.max_sweeps.min(40);
@@ -102,7 +102,7 @@ fn every_scene_goes_on_in_every_way_from_its_start_and_from_any_step() {
     runs.into_par_iter().for_each(|(mut scene, way)| {
         scene.set_settings(way);
         let what = format!("{}: {way:?}", scene.name);
-        // A step may ask for what the scene does not have; it is refused before anything begins.
+        // If the scene lacks something that a stepper needs, it is refused before the first step.
         let Ok(simulation) = scene.simulation() else { return };
         goes_on(&scene, &goes_on(&scene, &simulation, STEPS, &what), STEPS, &what);
     });
@@ -172,8 +172,8 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
     assert_eq!(goes_on(&scene, &simulation, 20, "pulled").pull(), simulation.pull());
 }
 
-/// A pile on a shaken base, beside a plate that turns back and forth, a wall on its way along a table, a
-/// belt, and a wall that is about to come to its end.
+/// A pile on a shaken base, beside a plate that turns back and forth, a wall that moves by a table, a belt, and a
+/// wall that is about to reach its end.
 fn among_motions() -> Scene {
     let mut scene = pressed_pile(40, 0.3, 5, parameters(5.0, 1e-3, 0.3, 0.5));
     let at = DVec2::new;
@@ -223,12 +223,12 @@ fn bodies_on_their_way_go_on() {
         let end = goes_on(&scene, &simulation, 20, &what);
         let worlds = [simulation.world(), end.world()];
         assert_ne!(worlds[0].fixed_discs, worlds[1].fixed_discs, "{what}: and go on moving");
-        // What is left of the way is in the file, and all that a new start from there takes.
+        // The file contains the remaining path, and an initial state made from it takes all of it.
         let mut anew = start(&read_back(&bytes_of(&scene, &simulation)).as_start());
         let begin = anew.world().boundaries.clone();
         anew.take_steps(20).expect("finite states");
         assert_eq!(begin, simulation.world().boundaries, "{what}");
-        // Under range a new start cuts its steps otherwise, and so do the bodies on their way.
+        // Under `range` a new run cuts its steps differently, and moves the bodies accordingly.
         if stepper != Stepper::Range {
             assert_eq!(anew.world().boundaries, end.world().boundaries, "{what}");
             assert_eq!(anew.world().gravity, end.world().gravity, "{what}");

@@ -1,4 +1,4 @@
-//! What tables hold of forces adds up: to how grains change, and to the work of borders.
+//! Forces in the tables add up to the changes of the grains and the work of the borders.
 
 use glam::DVec2;
 use slump::data::{Frame, Table, Values};
@@ -25,16 +25,16 @@ fn vectors(table: &Table, names: [&str; 2]) -> Vec<DVec2> {
     x.into_iter().zip(y).map(DVec2::from).collect()
 }
 
-/// What a frame says of grains, and of contacts in the last step or since the frame before.
+/// Contents of a frame: grains, and contacts of the last step or since the frame before.
 struct FrameTables {
     places: Vec<DVec2>,
-    /// By how much borders have brought grains back so far, m.
+    /// Distance by which borders have moved grains back so far, m.
     brought_back: Vec<f64>,
     velocities: Vec<DVec2>,
     spins: Vec<f64>,
     radii: Vec<f64>,
     masses: Vec<f64>,
-    /// Grains i and j of each contact, the latter unless it is none.
+    /// Grains i and j of each contact; j is `None` for other bodies.
     pairs: Vec<(usize, Option<usize>)>,
     forces: Vec<DVec2>,
     tangential: Vec<f64>,
@@ -62,18 +62,18 @@ impl FrameTables {
     }
 }
 
-/// How far a run's frames are off, relative to the largest momentum and border's work between two, and to those of
-/// stresses.
+/// Errors of a run's frames: of momentum and spin relative to the largest impulse and torque of a step, of border
+/// work and stress relative to the largest border work.
 #[derive(Debug, Default)]
 struct Off {
     momentum: f64,
     spin: f64,
     border_work: f64,
     stress: f64,
-    /// Contacts that transmitted something.
+    /// Contacts that transmitted a force.
     contacts: usize,
     crossing: usize,
-    /// Contacts of the time between two frames that are none any more.
+    /// Contacts that existed between two frames and no longer exist.
     parted: usize,
 }
 
@@ -81,7 +81,7 @@ const STRESSES: [&str; 4] = ["stress_xx", "stress_xy", "stress_yx", "stress_yy"]
 const MEAN_STRESSES: [&str; 4] =
     ["mean_stress_xx", "mean_stress_xy", "mean_stress_yx", "mean_stress_yy"];
 
-/// How far the stresses of a frame are off the sums over steps, J·s, and the largest of these.
+/// Largest difference between a frame's mean stresses and the sums over steps, J·s, and the largest of these sums.
 fn off_of_means(frame: &Frame, summed: [f64; 4]) -> [f64; 2] {
     let number = |name: &str| numbers(&frame.measures, name)[0];
     let areas = numbers(&frame.grains, "cell_area");
@@ -104,7 +104,7 @@ fn off_of_means(frame: &Frame, summed: [f64; 4]) -> [f64; 2] {
     [off, largest]
 }
 
-/// Of so many frames, each so many steps after the one before.
+/// Errors of this many frames, with `every` steps between two frames.
 fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
     let mut off = Off::default();
     let mut sums = ForceSums::default();
@@ -166,7 +166,7 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
         let mut crossing_work = 0.0;
         let mut change_of_moment = 0.0;
         for grain in 0..impulses.len() {
-            // What goes through the upper border comes back slower by the speed of the cell above.
+            // A grain that crosses the upper border comes back slower by the speed of the cell above.
             let crossed = heights(before.brought_back[grain] - after.brought_back[grain]);
             let slid = crossed * cell.border_speed() * DVec2::X;
             let unslid = after.velocities[grain] - slid;
@@ -192,7 +192,8 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
             }
             let measures = &frame.measures;
             let [area, stress] = ["area", "stress_xy"].map(|name| numbers(measures, name)[0]);
-            // Σ y F_x over the grains is Σ f_x ℓ_y over the contacts, and a height more for each across the border.
+            // Σ y F_x over the grains is Σ f_x ℓ_y over the contacts, plus a height for each contact across the
+            // border.
             let by_stress = secs * cell.shear_rate * (change_of_moment - area * stress);
             largest_work = largest_work.max(through_contacts.abs());
             let found = through_contacts + crossing_work;
@@ -208,13 +209,13 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
     off
 }
 
-/// Rounding, over the sums of a step.
+/// Rounding, relative to the sums of a step.
 const EXACT: f64 = 1e-10;
 
-/// Scenes with what each begins to do in few steps: name, Bond, Δt, steps until then and steps that are looked at.
+/// Scenes: name, Bond, Δt, steps until the motion of interest, and steps to compare.
 const CASES: [(&str, f64, f64, u64, usize); 10] = [
     ("pile", 0.0, 1e-3, 20, 30),
-    // Steps that are cut.
+    // These steps are cut.
     ("pile", 50.0, 5e-3, 5, 20),
     ("pile", 20.0, 1e-3, 20, 30),
     ("collapse", 0.0, 5e-4, 60, 20),
@@ -251,12 +252,12 @@ fn forces_between_two_frames_are_the_grains_change_and_the_borders_work() {
             assert!(off.crossing > 100 || name != "shear-periodic", "{what}");
             assert!(off.border_work < EXACT, "{what}");
             if stepper == Stepper::Avbd {
-                // It keeps no momentum: bodies see forces before their partners have answered.
+                // `avbd` does not conserve momentum: bodies see forces before their partners have reacted.
                 assert!(off.momentum > EXACT, "{what}");
                 continue;
             }
             assert!(off.momentum < EXACT && off.spin < EXACT, "{what}");
-            // A stress has one branch a contact, which under dem goes on changing from substep to substep.
+            // A stress uses one branch per contact, but under `dem` the branch changes from substep to substep.
             let of_stress = if stepper == Stepper::Dem { 0.01 } else { EXACT };
             assert!(off.stress < of_stress, "{what}");
         }
@@ -326,7 +327,7 @@ fn kinetic_energy_changes_by_four_works_whatever_moves() {
             }
             worst = worst.max(missing / largest);
         }
-        // The steps of avbd set places and take velocities from them.
+        // `avbd` sets positions and derives velocities from them.
         let allowed = if stepper == Stepper::Avbd { 0.01..0.1 } else { 0.0..EXACT };
         assert!(allowed.contains(&worst), "{stepper}: {worst}");
     }
@@ -365,7 +366,7 @@ fn fixed_discs_that_move_are_recorded_as_they_go() {
             let cell = run.world().periodic.unwrap_or_default();
             let way = cell.shortest(to - from);
             let velocity = vectors(&after, ["vx", "vy"])[disc];
-            // A circle bends, by Δt/2 ω times the speed.
+            // On a circle the path bends, by Δt/2 ω times the speed.
             let spin = numbers(&after, "omega")[disc];
             let bend = (0.51 * secs * spin.abs() + 1e-9) * velocity.length();
             assert!((way / secs).distance(velocity) <= bend + 1e-12, "{name} {disc}: {velocity}");
@@ -381,7 +382,7 @@ fn fixed_discs_that_move_are_recorded_as_they_go() {
 
 #[test]
 fn walls_tell_of_strain_force_and_work() {
-    // What the floor, the sides and the lid of a biaxial test do.
+    // Forces and works at the floor, sides and lid of a biaxial test.
     let mut run = scene("biaxial").simulation().expect("a scene");
     let before = Table::of_walls(&run.moment());
     run.take_steps(600).expect("finite states");
@@ -398,8 +399,8 @@ fn walls_tell_of_strain_force_and_work() {
     assert!(left.1.x < 0.0 && right.1.x > 0.0 && lid.1.y > 0.0 && floor.1.y < 0.0);
     assert!(lid.2 > 0.0 && floor.2 == 0.0, "{lid:?}");
 
-    // A drum's torque times its spin is its work, and nearly what steps say: a step counts the inward part ½ω²Δt·R of
-    // the wall's mean velocity as well, which is of first order in Δt.
+    // A drum's torque times its spin is its work, and nearly the work that steps report: a step also counts the
+    // inward part ½ω²Δt·R of the wall's mean velocity, which is of first order in Δt.
     let off = |time_step_secs: f64| {
         let mut drum = scene("drum");
         drum.parameters.time_step_secs = time_step_secs;
@@ -417,8 +418,9 @@ fn walls_tell_of_strain_force_and_work() {
 
 #[test]
 fn walls_have_the_work_and_torque_of_all_steps_between_two_frames() {
-    // The works are those of steps, but of a wall that a force drives, which has two speeds in a step, as in biaxial. Of a
-    // wall that turns, the table takes the slip along it at the end of each step, and steps at its beginning.
+    // The works equal those of the steps, except for walls driven by a force (biaxial), which have two speeds in a
+    // step. For a turning wall the table uses the slip at the end of each step, and the step uses that at its
+    // beginning.
     for (name, bond, time_step_secs, off_by, off_torque) in [
         ("vibrated", 0.0, 1e-3, 1e-10, 0.0),
         ("biaxial", 0.0, 1e-3, 5e-3, 0.0),

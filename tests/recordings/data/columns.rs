@@ -1,4 +1,4 @@
-//! What columns hold: every number of the moments, bit for bit.
+//! Contents of columns: every number of the moments, bitwise.
 
 use slump::granular::{GrainMeasures, measure};
 use slump::scene::SCENES;
@@ -21,7 +21,7 @@ fn assert_same(found: &Columns, expected: &Columns, what: &str) {
     }
 }
 
-/// Records a scene, and checks that the files have all that its moments had.
+/// Records a scene and checks that the files contain everything in its moments. Returns the moments.
 fn check(scene: &Scene, frames: usize, every: u64) -> Vec<Moment> {
     let folder = folder();
     let formats = [FormatName::Parquet, FormatName::Csv];
@@ -100,7 +100,7 @@ fn rows_of_text_have_a_field_for_each_name_where_a_wall_has_several_parts() {
 
 #[test]
 fn lost_grains_say_so_and_stay() {
-    // Faster than a wall can be seen at such a step.
+    // Too fast for a wall to be detected at this time step.
     let mut thin = scene("thin-wall");
     thin.grains[0].velocity *= 100.0;
     let moments = check(&thin, 60, 1);
@@ -161,8 +161,8 @@ fn parts_end_with_a_frame_and_do_not_hang_on_how_fast_the_disk_was() {
     assert!(grains["time"].iter().map(number).is_sorted());
 }
 
-/// OVITO looks no further for a first frame, and then knows no format for the file: a head of 16 lines passes,
-/// one of 17 does not (OVITO 3.17.2).
+/// OVITO recognises a file only if its first frame begins early enough: after a head of 16 lines it does, after 17 it
+/// does not (OVITO 3.17.2).
 #[test]
 fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
     for entry in SCENES {
@@ -181,7 +181,7 @@ fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
 
 type Row = Vec<(&'static str, Cell)>;
 
-/// Columns of rows, in any order of the columns.
+/// Collects rows into columns.
 fn columns(rows: impl IntoIterator<Item = Row>) -> Columns {
     let mut columns = Columns::new();
     for (name, cell) in rows.into_iter().flatten() {

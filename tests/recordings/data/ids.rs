@@ -1,4 +1,4 @@
-//! Numbers of bodies: each belongs to one body for the whole recording, whatever a hand does.
+//! Ids of bodies: each belongs to one body for the whole recording, despite changes by hand.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,8 @@ use slump::world::Disc;
 use super::tables::{Cell, Columns, number, parquet, whole};
 use super::*;
 
-/// The radius (bits) of each body by its id, which must be one; discs of a pile have different ones.
+/// The radius (bits) of each body by its id. Discs of a pile have different radii, so a second radius would be
+/// another body.
 fn radii(rows: impl Iterator<Item = (u64, f64)>) -> BTreeMap<u64, u64> {
     let mut radii = BTreeMap::new();
     for (id, radius) in rows {
@@ -19,7 +20,7 @@ fn radii(rows: impl Iterator<Item = (u64, f64)>) -> BTreeMap<u64, u64> {
     radii
 }
 
-/// The columns of `id` and `radius` of a dump, all frames.
+/// The columns `id` and `radius` of all frames of a dump.
 fn of_dump(path: &Path) -> Vec<(u64, f64)> {
     let (mut rows, mut places) = (Vec::new(), [0; 2]);
     for line in read(path).lines() {
@@ -35,7 +36,7 @@ fn of_dump(path: &Path) -> Vec<(u64, f64)> {
     rows
 }
 
-/// The arrays `id` and `radius` of a file of VTK.
+/// The arrays `id` and `radius` of a VTK file.
 fn of_vtk(path: &Path) -> Vec<(u64, f64)> {
     const DATA: &[u8] = b"<AppendedData encoding=\"raw\">\n   _";
     let bytes = bytes(path);
@@ -69,7 +70,7 @@ fn an_id_belongs_to_one_body_for_the_whole_recording_in_every_format() {
     let new = |radius: f64, x: f64| Disc { position: glam::DVec2::new(x, 0.2), radius };
     simulation.add_grain(new(0.0031, 0.1), glam::DVec2::ZERO).expect("there is room");
     record(&mut recording, &mut simulation, 2, 2);
-    // The number of a grain that was put in and taken out is not given again, nor after the run is saved.
+    // The id of an added and removed grain is not used again, even after the run is saved.
     let last = simulation.world().grains.len() - 1;
     simulation.remove_grain(last).expect("it is there");
     let saved = SavedState::new(pile.clone(), simulation, Tally::default());
@@ -96,7 +97,7 @@ fn an_id_belongs_to_one_body_for_the_whole_recording_in_every_format() {
     let frames = (0..13).map(|frame| folder.path().join(format!("vtk/grains_{frame:06}.vtp")));
     assert_eq!(radii(frames.flat_map(|path| of_vtk(&path))), expected);
 
-    // Contacts and pairs have the same numbers: those of a frame are in its table of grains.
+    // Contacts and pairs have the ids in their frame's table of grains.
     let in_frame: Vec<(u64, u64)> =
         table["step"].iter().map(whole).zip(table["id"].iter().map(whole)).collect();
     for name in ["contacts", "pairs"] {

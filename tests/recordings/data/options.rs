@@ -1,4 +1,4 @@
-//! What a user asks of recordings, and recordings of a study's runs.
+//! Options of recordings, and recordings of a study's runs.
 
 use super::tables::{metadata, number, parquet, parts, steps};
 use super::*;
@@ -43,7 +43,7 @@ fn frames_are_at_the_times_of_the_pictures_or_at_their_own() {
 fn data_alone_needs_no_renderer_and_pictures_may_be_in_the_same_folder() {
     let folder = folder();
     let out = text(folder.path());
-    // A renderer that this machine may not have is not even looked for.
+    // The program does not look for a renderer, which this machine may lack.
     let mut alone = slump("--headless --renderer gl --data");
     let alone = run(alone.arg(out).args(BRIEF).env("LIBGL_DRIVERS_PATH", "/nowhere"));
     assert!(alone.status.success(), "{}", said(&alone));
@@ -56,7 +56,7 @@ fn data_alone_needs_no_renderer_and_pictures_may_be_in_the_same_folder() {
     for file in ["frame_00002.png", "observables.csv", "manifest.json", "data.json", "frames.csv"] {
         assert!(folder.path().join(file).exists(), "{file}");
     }
-    // Those of the pictures are at the times of the frames.
+    // The pictures are taken at the times of the frames.
     let manifest = manifest(folder.path());
     let pictures = manifest["pictures"].as_array().expect("pictures");
     let step = |it: &Value| it["shows"][0]["observables"]["step"].as_u64().expect("step");
@@ -76,7 +76,7 @@ fn a_run_is_the_same_with_a_recording_and_without() {
         succeed(slump(line).arg(scene).args(more).arg("--data").arg(&data));
         let table = |folder: &Path| bytes(folder.join("observables.csv"));
         assert_eq!(table(&plain), table(&recorded), "{scene}");
-        // The recording's own table has the same numbers.
+        // The recording's own table has equal numbers.
         let mut rows = csv::Reader::from_path(plain.join("observables.csv")).expect("a table");
         let names = rows.headers().expect("names").clone();
         let energy = names.iter().position(|name| name == "kinetic_energy").expect("a column");
@@ -113,7 +113,7 @@ fn scene_files_ask_for_recordings() {
     let said = sentence(&mut again(&[]));
     assert!(said.contains("unless --overwrite is given"), "{said}");
     succeed(&mut again(&["--overwrite"]));
-    // The command line goes first.
+    // The command line overrides the scene.
     let other = folder.path().join("other");
     let line = "--headless --dt 1e-3 --data-every 0.05 --data-format parquet --scene";
     succeed(slump(line).arg(&scene).arg("--data").arg(&other));
@@ -211,7 +211,7 @@ fn every_run_has_its_recording_by_its_key_whichever_part_it_ran_in() {
         let said: f64 = about["parameters.bond"].parse().expect("a number");
         assert_eq!(said, bond.parse::<f64>().expect("a number"));
     }
-    // A recording that is gone is made again, and so is one that a kill left half.
+    // A missing recording is made again, and so is one that a kill has left incomplete.
     std::fs::remove_dir_all(out.join("data").join(&runs[1].0)).expect("gone");
     let output = said(&run(&mut sweep(&study, &out, &[])));
     assert!(output.contains("5 of 6 runs were there"), "{output}");
@@ -229,7 +229,7 @@ fn results_are_the_same_with_recordings_and_without() {
     let rows = |out: &str| {
         let table = folder.path().join(out).join("runs.csv");
         let table = read(table);
-        // The second cell is the run's key, which tells what is kept of it.
+        // The second cell is the run's key, which depends on the recording.
         let row = |line: &str| line.splitn(3, ',').nth(2).map(str::to_owned);
         table.lines().map(row).collect::<Vec<_>>()
     };

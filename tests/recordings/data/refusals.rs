@@ -1,4 +1,4 @@
-//! Files that are no initial states: one sentence with file, place, value and what is allowed.
+//! Files that are not initial states are refused in one sentence with file, place, value and the allowed values.
 
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ fn parquet_of_others_is_read() {
     assert_eq!(found.grains[2].radius, 0.0025);
     assert_eq!(found.grains[2].position, glam::DVec2::new(0.02, 0.006));
     assert_eq!(found.grains[2].velocity, glam::DVec2::ZERO);
-    // Whole numbers are numbers, and ids put discs in order.
+    // Whole numbers are accepted, and ids determine the order of the discs.
     let ids = Column::Whole("id", &[7, 3, 5]);
     write_columns(&path, &[Column::Whole("x", &[1, 2, 3]), YS, RADII, ids]);
     let found = read_grains(&path, None).expect("discs");
@@ -153,7 +153,7 @@ fn text_that_is_no_state_is_told_of_by_line() {
     check("step,x,y,radius\n", "holds no disc, but must hold at least one");
 }
 
-/// A mass that the scene does not have would change the physics without a word.
+/// A mass that differs from the scene's would silently change the physics.
 #[test]
 fn masses_that_the_scene_does_not_have_are_refused_in_every_format() {
     let folder = folder();
@@ -168,7 +168,7 @@ fn masses_that_the_scene_does_not_have_are_refused_in_every_format() {
     check(&path, "line 3: ", another);
     write_columns(&columns, &[XS, YS, RADII, Column::Numbers("mass", &[1e-5, 1e-2, 1e-2])]);
     check(&columns, "row 2: ", another);
-    // One density, and not that of the scene.
+    // All discs have the same density, but not the scene's.
     write(&path, "x,y,radius,mass\n0,0.0075,0.0025,4.908738521e-2\n");
     check(&path, "", "mass is 2.500000e3 kg per m² of a disc, but must be left out or that of");
     for mass in ["0", "-1", "inf"] {
@@ -179,13 +179,13 @@ fn masses_that_the_scene_does_not_have_are_refused_in_every_format() {
             &format!("mass is {mass} kg, but must be left out or finite and > 0"),
         );
     }
-    // Masses of the scene are read; fixed discs have none.
+    // The scene's own masses are accepted; fixed discs have none.
     let mass = std::f64::consts::PI * 0.0025f64.powi(2);
     let table = format!("x,y,radius,kind,mass\n0,0.0075,0.0025,grain,{mass}\n0,0,0.0025,fixed,\n");
     write(&path, &table);
     assert_eq!(read_grains(&path, None).expect("discs").fixed_discs.len(), 1);
     succeed(slump("scene --initial").arg(&path).stdout(Stdio::null()));
-    // A scene file that has the density of the file's discs takes them, and no other.
+    // A scene file is accepted only with the density of the file's discs.
     let mut scene = scene("pile");
     scene.grains.clear();
     scene.source = Some(slump::scene::GrainSource::Csv { path: "discs.csv".into() });
@@ -198,7 +198,7 @@ fn masses_that_the_scene_does_not_have_are_refused_in_every_format() {
     }
 }
 
-/// As pandas and numpy write tables by default, and as spreadsheets do.
+/// Tables as pandas, numpy and spreadsheets write them by default.
 #[test]
 fn a_table_of_another_program_is_refused_with_the_way_to_mend_it() {
     let folder = folder();
@@ -249,7 +249,7 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     let mut refused = 0;
     for round in 0..600 {
         let mut bytes = whole.clone();
-        // Most of what can go wrong is in the footer.
+        // Most possible errors are in the footer.
         let from = if round % 2 == 0 { 0 } else { bytes.len().saturating_sub(9000) };
         for _ in 0..random.random_range(1..4) {
             let place = random.random_range(from.max(4)..bytes.len());
@@ -268,7 +268,7 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     assert!(refused > 90, "many were damaged where it shows: {refused}");
 }
 
-/// A scene takes some sixty times its text in memory.
+/// A scene takes about sixty times its text in memory.
 #[test]
 fn a_text_that_nobody_means_is_refused_before_it_is_parsed() {
     let folder = folder();
@@ -279,7 +279,8 @@ fn a_text_that_nobody_means_is_refused_before_it_is_parsed() {
     assert!(said.contains("has more than 33554432 bytes, but must have no more"), "{said}");
 }
 
-/// A decoder that is out of step with what was looked at takes room for anything: such a bit once asked for 24 GiB.
+/// If the decoder reads other numbers than the check before it, it may allocate any amount: one such bit asked for 24
+/// GiB.
 #[test]
 fn parquet_with_any_bit_turned_is_read_or_refused() {
     let folder = folder();
@@ -298,7 +299,7 @@ fn parquet_with_any_bit_turned_is_read_or_refused() {
     assert!(refused > 2_000, "{refused}");
 }
 
-/// Each of these once took the program down: by memory, by its stack, or by a panic of the decoder.
+/// Each of these has ended the program before: by memory, by its stack, or by a panic of the decoder.
 #[test]
 fn small_parquet_that_lies_is_refused_in_a_sentence() {
     let folder = folder();

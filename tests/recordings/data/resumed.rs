@@ -1,4 +1,4 @@
-//! Recordings that go on, and what several want of one folder.
+//! Resumed recordings, and several recordings for one folder.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use slump::sim::ForceSums;
 
 use super::*;
 
-/// All files of a recording, but for the manifest.
+/// All files of a recording except the manifest.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for name in names_in(folder) {
@@ -41,7 +41,7 @@ fn what_goes_on_is_what_was_never_stopped() {
     let folder = folder();
     let expected = folder.path().join("whole");
     recorded(&expected, &formats, &pile, 120, 2);
-    // Before the first frame, within the first part, at a frame, between two, and at the end.
+    // Before the first frame, within the first part, at a frame, between two frames, and at the end.
     for stopped_at in [0, 1, 9, 40, 77, 120] {
         let path = folder.path().join(format!("from-{stopped_at}"));
         let mut simulation = pile.simulation().expect("a scene");
@@ -49,7 +49,7 @@ fn what_goes_on_is_what_was_never_stopped() {
         record(&mut recording, &mut simulation, stopped_at, 2);
         let (saved, sums) = (simulation.clone(), recording.sums().clone());
         let mark = recording.flush().expect("written");
-        // The run goes on for a while, and is stopped after its checkpoint.
+        // The run continues for a while and is stopped after its checkpoint.
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
         drop(recording);
         let mut simulation = saved;
@@ -117,7 +117,7 @@ fn a_recording_that_lacks_frames_of_its_run_is_refused_and_keeps_what_it_has() {
     assert_eq!(bytes(&grains), before);
 }
 
-/// A power cut can take rows that had been written, and people tidy up.
+/// A power cut may lose written rows, and people delete files.
 #[test]
 fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format() {
     let pile = scene("pile");
@@ -128,7 +128,7 @@ fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format()
         let mut simulation = pile.simulation().expect("a scene");
         record(&mut recording, &mut simulation, 12, 3);
         let mark = recording.flush().expect("written");
-        // The run goes on after the mark.
+        // The run continues after the mark.
         record(&mut recording, &mut simulation, 6, 3);
         recording.finish().expect("a recording");
         let before = files(folder.path());
@@ -143,7 +143,7 @@ fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format()
             for part in [0, 1, 2, 3] {
                 match part {
                     0 => std::fs::remove_file(&path).expect("a file"),
-                    // Of six frames two may go.
+                    // Two of six frames may be missing.
                     part => write(&path, &whole[..whole.len() * part / 6]),
                 }
                 let damaged = files(folder.path());
@@ -181,7 +181,7 @@ fn frames_that_are_there_are_not_made_again() {
     let recording =
         Recording::go_on(folder.path(), &formats, &about, 7, &mark).expect("it goes on");
     let mut recording = recording.at(Times::Every(0.002), &simulation);
-    // As a run that goes on asks before its first step.
+    // A resumed run asks this before its first step.
     recording.add_if_due(&simulation).expect("a frame");
     assert_eq!(recording.frames(), 4);
     simulation.step().expect("a finite state");
@@ -226,7 +226,7 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
     let said = again.err().expect("a refusal").to_string();
     assert!(said.starts_with("data is ") && said.contains("--overwrite"), "{said}");
     assert_eq!(files(folder.path()), before);
-    // Without its manifest it still is one.
+    // Without its manifest it is still recognised as a recording.
     std::fs::remove_file(folder.path().join("data.json")).expect("gone");
     std::fs::remove_file(folder.path().join("frames.csv")).expect("gone");
     assert!(Recording::start(folder.path(), &[FormatName::Csv], &about, false).is_err());
@@ -251,7 +251,7 @@ fn a_recording_goes_on_in_its_own_formats_alone() {
     let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4, &none);
     let said = other.err().expect("a refusal").to_string();
     assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");
-    // What is no table of this version is not gone on with, nor touched.
+    // A table of another version is neither continued nor changed.
     let table = folder.path().join("csv/contacts.csv");
     let text = read(&table).replace("normal_force", "force");
     write(&table, &text);

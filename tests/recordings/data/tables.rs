@@ -1,4 +1,4 @@
-//! Files of recordings as tables of cells, read by the crates alone.
+//! Files of recordings as tables of cells, read without Slump's own readers.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
-/// What is in a row of a column.
+/// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// A number, bit by bit.
+    /// Bits of a number.
     Number(u64),
     Whole(u64),
     Flag(bool),
@@ -26,7 +26,7 @@ impl From<f64> for Cell {
 
 pub type Columns = BTreeMap<String, Vec<Cell>>;
 
-/// The parts of a table. What is hidden is what a kill left, which readers of folders pass by.
+/// The parts of a table without hidden files, which killed programs leave and readers of folders ignore.
 pub fn parts(folder: &Path, table: &str) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder.join(table)) else { return Vec::new() };
     let mut parts: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
@@ -35,7 +35,7 @@ pub fn parts(folder: &Path, table: &str) -> Vec<PathBuf> {
     parts
 }
 
-/// A table in Parquet, from all of its parts.
+/// A table in Parquet, from all its parts.
 pub fn parquet(folder: &Path, table: &str) -> Columns {
     let mut columns = Columns::new();
     for part in parts(folder, table) {
@@ -58,14 +58,14 @@ pub fn parquet(folder: &Path, table: &str) -> Columns {
     columns
 }
 
-/// What the metadata of a part says.
+/// The metadata of a part.
 pub fn metadata(part: &Path) -> BTreeMap<String, String> {
     let reader = SerializedFileReader::new(File::open(part).expect("a part")).expect("a part");
     let pairs = reader.metadata().file_metadata().key_value_metadata().expect("metadata");
     pairs.iter().map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default())).collect()
 }
 
-/// A table in text; the kind of a column is what its cells can be read as, which a table in Parquet tells.
+/// A table in text. The types of its columns are those of the table `like`.
 pub fn csv(path: &Path, like: &Columns) -> Columns {
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).expect("a table");
@@ -87,7 +87,7 @@ pub fn csv(path: &Path, like: &Columns) -> Columns {
     columns
 }
 
-/// The steps of a table's rows, each once.
+/// The steps of a table's rows, without repetition.
 pub fn steps(columns: &Columns) -> Vec<u64> {
     let mut steps: Vec<u64> = columns.get("step").into_iter().flatten().map(whole).collect();
     assert!(steps.is_sorted(), "rows rise by their steps");

@@ -1,5 +1,5 @@
-//! What recordings look like to ParaView and OVITO, and that they stay whole. `tests/clients/` asks those
-//! programs themselves.
+//! Recordings for ParaView and OVITO: their contents, and that they stay complete. `tests/clients/` reads them with
+//! these programs.
 
 mod vtp;
 mod whole;
@@ -14,7 +14,7 @@ use slump::sim::{
 };
 use slump::world::{Boundary, Disc};
 
-/// A number whose shortest form has all digits.
+/// A number whose shortest decimal form needs all digits.
 const THIRD: f64 = 1.0 / 3.0;
 
 fn about() -> RunFacts {
@@ -23,7 +23,7 @@ fn about() -> RunFacts {
     }
 }
 
-/// Three grains, the last of them lost, on a fixed disc and a floor.
+/// Three grains, one of them lost, on a fixed disc and a floor.
 fn moment(step: u64) -> Moment {
     let grain = |id: u32, x: f64, y: f64, radius: f64| GrainState {
         id,
@@ -75,7 +75,8 @@ fn moment(step: u64) -> Moment {
     }
 }
 
-/// What is behind the lines that a text begins with; `…` stands for any lines, or for any end of a line.
+/// The rest of a text after the lines of a pattern. A line `…` matches any lines, and `…` at the end of a line any
+/// rest.
 fn after<'a>(mut text: &'a str, pattern: &str) -> &'a str {
     let mut skips = false;
     for wanted in pattern.lines() {
@@ -106,7 +107,7 @@ fn start(folder: &Path) -> Recording {
     Recording::start(folder, FORMATS, &about(), false).expect("a recording")
 }
 
-/// Resumes at a step, with the frames up to there that every format has.
+/// Resumes at a step, with the frames up to it that every format has.
 fn go_on(folder: &Path, step: u64) -> Recording {
     let index = std::fs::read_to_string(folder.join("frames.csv")).unwrap_or_default();
     let whole = index.rfind('\n').map_or("", |end| &index[..end]);
@@ -116,7 +117,7 @@ fn go_on(folder: &Path, step: u64) -> Recording {
     Recording::go_on(folder, FORMATS, &about(), step, &mark).expect("a recording to go on with")
 }
 
-/// Writes frames of the numbers, each of the step ten times as high.
+/// Writes frames with these numbers; frame n is of step 10 n.
 fn write_frames(recording: &mut Recording, numbers: std::ops::Range<u64>) {
     for number in numbers {
         recording.add(moment(10 * number)).expect("a frame");

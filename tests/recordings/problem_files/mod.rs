@@ -17,7 +17,7 @@ fn kept_problem(name: &str) -> ProblemFile {
     ProblemFile::read(&problems().join(name)).expect("a proper problem file")
 }
 
-/// The names of the problems kept here: ours, then the published one.
+/// Names of the stored problems: Slump's own, then the published one.
 fn kept() -> Vec<String> {
     let mut names = names_in(&problems());
     names.retain(|name| name.ends_with(".json"));
@@ -31,7 +31,7 @@ fn settings(method: Method, tolerance: f64) -> SolverSettings {
     SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::SWEEPS }
 }
 
-/// Scenes of every model, a few steps into their motion.
+/// Scenes of every model, after a few steps.
 fn scenes() -> Vec<(&'static str, Scene, f64)> {
     let pile = |physics: Physics, bond: f64, cone: FrictionCone| {
         let parameters = parameters(bond, 1e-3, 0.1, 0.5);
@@ -51,7 +51,7 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     let mut line = cradle();
     line.physics = LINE;
     for grain in &mut line.grains {
-        // Pressed together, so that there are contacts from the start.
+        // Pressed together, so that contacts exist from the start.
         grain.position.x *= 0.999;
         grain.velocity = DVec2::new(-2.0 * grain.position.x, 0.0);
     }
@@ -66,7 +66,7 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     ]
 }
 
-/// Solves a step's problem by a few sweeps, and says what the residual and the impulses then are.
+/// Solves a step's problem by a few sweeps. Returns the residual and the impulses.
 struct Swept(u32);
 
 impl ProblemVisitor for Swept {
@@ -142,7 +142,7 @@ fn a_file_reads_back_bit_for_bit_and_solves_as_the_simulation_does() {
     }
 }
 
-/// Methods that need bodies say so of a problem in W alone; every other one takes both forms.
+/// Methods that need bodies refuse a problem in W alone; all others accept both forms.
 #[test]
 fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     let mut on_matrix = 0;
@@ -175,15 +175,15 @@ fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     assert!(on_matrix >= kept().len());
 }
 
-/// What Siconos found, written by `tests/problems/make_reference.py`.
+/// Siconos's solution, written by `tests/problems/make_reference.py`.
 #[derive(serde::Deserialize)]
 struct Reference {
     residual: f64,
     u: Vec<f64>,
 }
 
-/// Velocities are unique without friction, and happen to be in these problems with it: cold and
-/// warm starts and both solvers end at the same ones. To 1e-9 of the fastest free velocity.
+/// Velocities are unique without friction, and in these problems also with friction: cold starts, warm starts and
+/// both solvers agree to 1e-9 of the fastest free velocity.
 #[test]
 fn velocities_are_those_that_siconos_finds() {
     let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
@@ -208,7 +208,7 @@ fn velocities_are_those_that_siconos_finds() {
     }
 }
 
-/// Irregular grains: every contact's own block couples normal and tangent.
+/// Irregular grains: the block of each contact couples its normal and tangential components.
 #[test]
 fn methods_on_w_solve_contacts_that_couple_normal_and_tangent() {
     let mut random = random(5);

@@ -1,9 +1,9 @@
-//! How far two bodies are from each other, along which normal, and when they meet that nothing holds.
+//! Gap and normal between two bodies, and the time at which two freely moving bodies meet.
 //!
-//! **When the gap closes.** A body is convex, and so is the distance to it along a straight way: the tangent
-//! of the gap is never above it, and Newton's steps come to its first zero from below without passing it.
-//! With an acceleration the parabola of gap, speed and acceleration takes the tangent's place. Where the
-//! gap no longer closes the two pass by each other, which the tangent at the beginning alone cannot tell.
+//! **Time of impact.** A body is convex, so its distance is a convex function along a straight path: the tangent of
+//! the gap never exceeds the gap, and Newton's iteration approaches its first zero from below without passing it.
+//! With an acceleration, the parabola of gap, speed and acceleration replaces the tangent. If the gap stops closing,
+//! the two bodies pass each other; the tangent at the beginning alone cannot show that.
 
 use glam::DVec2;
 
@@ -13,14 +13,14 @@ use super::numbering::{Numbering, Other};
 use crate::number::Parts;
 use crate::world::World;
 
-/// Newton's steps to a meeting at the most. They converge quadratically, but where two bodies graze each
-/// other by halves at first.
+/// Limit for Newton's iterations to a meeting. They converge quadratically, but only by halving at first if the two
+/// bodies graze each other.
 const MOST_STEPS: u32 = 60;
-/// A gap that is none but for rounding, in radii.
+/// Gap that counts as zero because of rounding, in radii.
 const ROUNDING_IN_RADII: f64 = 1e-13;
 
-/// Normal and gap between a disc (centre, radius; m) and another body, or nothing where another feature tells of the
-/// touched point.
+/// Normal and gap (m) between a disc (centre, radius; m) and another body. `None` if another feature reports the
+/// nearest point.
 #[inline(always)]
 pub(super) fn approach(
     world: &World,
@@ -45,8 +45,8 @@ pub(super) fn approach(
     Some(disc_gap(offset, radius + other_radius, axes))
 }
 
-/// Normal (from j to i) and gap of two discs, i being off j by `offset`. Centres that coincide are told apart along x, so that
-/// the step stays finite.
+/// Normal (from j to i) and gap of two discs, with i at `offset` from j. Coincident centres get a normal along x, so
+/// that the step stays finite.
 #[inline(always)]
 fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
     if axes == 1 {
@@ -58,7 +58,7 @@ fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
 }
 
 impl Contact {
-    /// The gap of the pair where its bodies are now, m, or nothing where another feature touches the grain instead.
+    /// The present gap of the pair, m. `None` if the grain now touches another feature instead.
     pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
         let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
         let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
@@ -66,32 +66,32 @@ impl Contact {
     }
 }
 
-/// Which pairs with a gap are contacts too, because they may touch within the step.
+/// Selects pairs with a gap that are contacts too, because they may touch within the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LookAhead {
     /// Δt, s.
     pub time_step_secs: f64,
-    /// Pairs that would come nearer than this by themselves are contacts, m.
+    /// Pairs that would approach to less than this distance are contacts, m.
     pub distance: f64,
-    /// Farther pairs are none, m.
+    /// Pairs farther apart than this are not contacts, m.
     pub reach: f64,
     /// Which of the contacts are in touch.
     pub in_touch: InTouch,
 }
 
-/// Which pairs are in touch and pull, others just come near.
+/// Criterion by which a contact is in touch and can pull. Other contacts are only near.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum InTouch {
-    /// Those that touch as the step begins.
+    /// Pairs that touch as the step begins.
     Touching,
-    /// Those that have touched: they are bonded from then on, and contacts until the bond breaks.
+    /// Pairs that have touched. They stay bonded, and contacts, until the bond breaks.
     Bonded,
-    /// Those whose gap is no larger as the step begins, m.
+    /// Pairs with at most this gap as the step begins, m.
     Within(f64),
 }
 
 impl LookAhead {
-    /// The same, with all that is no farther apart than `range` (m) in touch.
+    /// The same look-ahead, with all pairs up to `range` (m) apart in touch.
     pub(crate) fn pulling_within(self, range: f64) -> Self {
         Self {
             distance: self.distance.max(range),
@@ -101,10 +101,10 @@ impl LookAhead {
         }
     }
 
-    /// The gap that a grain of that velocity (m/s) may close, m: with its own speed, but for bonds, which
-    /// may be open however slow their grains are.
+    /// The gap that a grain of this velocity (m/s) may close by its own speed, m. Bonds may be open however slow
+    /// their grains are, so with bonds it is half the reach.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
-        /// What rounding makes of a speed.
+        /// Allowance for the rounding of a speed.
         const ROUNDING: f64 = 1.0 + 1e-9;
         match self.in_touch {
             InTouch::Bonded => 0.5 * self.reach,
@@ -115,7 +115,7 @@ impl LookAhead {
         }
     }
 
-    /// The gap that what is no grain is to be seen at besides, m, where the fastest wall goes `way_of_walls` in the step.
+    /// Detection distance for walls and fixed discs, m, if the fastest wall moves by `way_of_walls` in the step.
     pub(crate) fn way_of_others(&self, way_of_walls: f64) -> f64 {
         let of_bonds =
             if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 };
@@ -123,10 +123,10 @@ impl LookAhead {
     }
 }
 
-/// How a grain goes relative to the other body of a contact, from the beginning of a step on.
+/// Motion of a grain relative to the other body of a contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// Where it would have begun to be where it is now, m off its place.
+    /// Offset of the starting point from the present relative position, m.
     pub offset: DVec2,
     /// v, m/s.
     pub velocity: DVec2,
@@ -135,17 +135,17 @@ pub(crate) struct RelativeMotion {
 }
 
 impl RelativeMotion {
-    /// x(s) − x, m.
+    /// Relative displacement x(s) − x, m.
     fn way(&self, secs: f64) -> DVec2 {
         self.offset + secs * (self.velocity + 0.5 * secs * self.acceleration)
     }
 
-    /// The velocity at s, m/s.
+    /// Relative velocity at s, m/s.
     pub(crate) fn velocity_at(&self, secs: f64) -> DVec2 {
         self.velocity + secs * self.acceleration
     }
 
-    /// Normal and gap at s, or nothing where another feature tells of the touched point.
+    /// Normal and gap at s. `None` if another feature reports the nearest point.
     pub(crate) fn approach(
         &self,
         world: &World,
@@ -160,7 +160,7 @@ impl RelativeMotion {
         approach(world, candidates, place + self.way(secs), radius, other, axes)
     }
 
-    /// The time of impact: the first moment from one to another (s) at which the two touch, and their normal then.
+    /// Time of impact: the first time in the given interval (s) at which the two bodies touch, and their normal then.
     pub(crate) fn time_of_impact(
         &self,
         world: &World,
@@ -187,7 +187,7 @@ impl RelativeMotion {
     }
 }
 
-/// The first h > 0, s, at which a gap (m) that opens with a speed (m/s) and an acceleration (m/s²) is none.
+/// The first h > 0, s, at which a gap (m) with opening speed (m/s) and acceleration (m/s²) is zero.
 fn first_zero(gap: f64, speed: f64, acceleration: f64) -> Option<f64> {
     let squared = speed * speed - 2.0 * acceleration * gap;
     if squared < 0.0 {
@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(first_zero(2.0, -1.0, 0.0), Some(2.0));
         assert_eq!(first_zero(2.0, 1.0, 0.0), None);
         assert_eq!(first_zero(0.0, 3.0, -2.0), Some(3.0));
-        // ½·2·h² − 3h + 2: at h = 1 before it is back at h = 2.
+        // ½·2·h² − 3h + 2 is zero at h = 1, and again at h = 2.
         assert_eq!(first_zero(2.0, -3.0, 2.0), Some(1.0));
         assert_eq!(first_zero(2.0, -1.0, 2.0), None);
         let h = first_zero(2.0, 1.0, -2.0).expect("it falls back");

@@ -1,27 +1,27 @@
-//! Which discs are near each other: by a grid, or by a tree where their sizes differ much.
+//! Search for nearby discs: with a grid, or with a tree if their sizes differ much.
 //!
-//! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. Cells are square and as wide as the pairs looked for are apart at most, so that the two points
-//! of a pair lie in one cell or in neighbouring ones. Each point looks at its own cell and at half
-//! of the 8 around it (of the 2 on a line), so each pair is seen once. A cell's number is hashed into as many
-//! buckets as there are points: a grain that flies off far away costs one bucket, not a larger
-//! grid, and a scene far from the origin costs nothing. Points are sorted by bucket with a counting
-//! sort; points of other cells in the same bucket are told apart by the stored cell.
+//! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. Cells
+//! are square and as wide as the largest distance of interest, so the two points of a pair lie in the same cell or in
+//! neighbouring cells. Each point looks at its own cell and at half of the 8 around it (of the 2 on a line), so each
+//! pair is found once. A cell's index is hashed into as many buckets as there are points: a grain that flies far away
+//! costs one bucket instead of a larger grid, and a scene far from the origin costs nothing. Points are sorted by
+//! bucket with a counting sort; the stored cell distinguishes points of other cells in the same bucket.
 //!
-//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. A grid's cells are as wide as the largest disc, so that each of many small ones looks at very
-//! many others. The tree has no such length. It is built once and then refitted to the moved discs
-//! and put in better order bit by bit: built anew each time it loses to the grid
-//! (`cargo bench --bench broad_phase`).
+//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are as wide as
+//! the largest disc, so each of many small discs would look at very many others; the tree has no such length. It is
+//! built once, then refitted to the moved discs and improved incrementally. Rebuilding it each time is slower than
+//! the grid (`cargo bench --bench broad_phase`).
 
 use glam::DVec2;
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
-/// Where the largest disc, with or without its skin, is more than this many times as large as the
-/// smallest, the tree finds the pairs, else the grid. At 1:1.5 the two take about the same time, at
-/// 1:20 the grid takes 1.2 to 18 times as long (`cargo bench --bench broad_phase`).
+/// The tree finds the pairs if the largest disc, with or without its skin, is more than this many times as large as
+/// the smallest; otherwise the grid does. At 1:1.5 both take about the same time; at 1:20 the grid takes 1.2 to 18
+/// times as long (`cargo bench --bench broad_phase`).
 const SIZE_RATIO_OF_TREE: f64 = 4.0;
 
-/// What finds the pairs of discs of given radii.
+/// Finder of pairs of discs.
 #[derive(Clone, Debug, Default)]
 pub struct BroadPhase {
     radii_differ: bool,
@@ -41,21 +41,21 @@ impl Default for PairFinder {
 }
 
 impl BroadPhase {
-    /// Suits discs of these radii, m.
+    /// Chooses the method for discs of these radii, m.
     pub fn of(radii: &[f64]) -> Self {
         let (radii_differ, _) = spread(radii.iter().copied());
         Self { radii_differ, ..Self::default() }
     }
 
-    /// Has the next search begin anew, of another number of discs.
+    /// Prepares the next search for a different number of discs.
     pub(crate) fn forget_discs(&mut self) {
         if matches!(self.finder, PairFinder::Tree(_)) {
             self.finder = PairFinder::default();
         }
     }
 
-    /// Calls `found` once with every pair of discs that are nearer to each other than their extents
-    /// together: radii with skins, m. And with some others.
+    /// Calls `found` once for every pair of discs whose distance is below the sum of their extents (radii with skins,
+    /// m), and for some other pairs.
     pub fn pairs<const AXES: usize>(
         &mut self,
         centres: &[DVec2],
@@ -85,21 +85,21 @@ impl BroadPhase {
     }
 }
 
-/// Whether sizes differ so much that the tree is to be taken, and the largest.
+/// Returns true if the sizes differ enough for the tree, and the largest size.
 fn spread(sizes: impl Iterator<Item = f64> + Clone) -> (bool, f64) {
     let largest = sizes.clone().fold(0.0, f64::max);
     let smallest = sizes.fold(f64::INFINITY, f64::min);
     (largest > SIZE_RATIO_OF_TREE * smallest, largest)
 }
 
-/// The number of a grid's cell along each axis.
+/// The index of a grid cell along each axis.
 type GridCell = [i64; 2];
 
 /// A cell list. All its memory is kept between rebuilds.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     cells_per_metre: f64,
-    /// Bucket b holds entries `starts[b] .. starts[b + 1]`; the number of buckets is a power of two.
+    /// Bucket b contains entries `starts[b] .. starts[b + 1]`; the number of buckets is a power of two.
     starts: Vec<u32>,
     /// Point indices, bucket by bucket, rising within a bucket.
     entries: Vec<u32>,
@@ -123,8 +123,8 @@ impl Grid {
         }
         self.entries.resize(positions.len(), 0);
         self.cells.resize(positions.len(), [0; 2]);
-        // Each bucket is filled from its end, so that its start is left in place: walking the
-        // points backwards leaves them rising within the bucket.
+        // Fill each bucket from its end, which leaves its start in place. Walking the points backwards leaves them in
+        // increasing order within the bucket.
         for (index, &position) in positions.iter().enumerate().rev() {
             let cell = self.cell::<AXES>(position);
             let bucket = self.bucket(cell);
@@ -133,15 +133,15 @@ impl Grid {
             self.entries[slot] = index as u32;
             self.cells[slot] = cell;
         }
-        // Now entry b + 1 is the start of bucket b: move the list down by one.
+        // Entry b + 1 is now the start of bucket b: move the list down by one.
         self.starts.copy_within(1.., 0);
         self.starts[buckets] = positions.len() as u32;
     }
 
-    /// Calls `found` once with every pair of points in the same or in neighbouring cells: all pairs
-    /// within one cell width are among them.
+    /// Calls `found` once for every pair of points in the same or in neighbouring cells, which includes all pairs
+    /// within one cell width.
     pub fn pairs<const AXES: usize>(&self, mut found: impl FnMut(u32, u32)) {
-        /// Neighbours in front, row by row; the first is the only one on a line.
+        /// Forward neighbours, row by row. On a line only the first exists.
         const FORWARD: [GridCell; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
         let forward = if AXES == 1 { &FORWARD[..1] } else { &FORWARD };
         for (slot, (&point, &cell)) in self.entries.iter().zip(&self.cells).enumerate() {
@@ -169,8 +169,8 @@ impl Grid {
     }
 
     fn bucket(&self, [x, y]: GridCell) -> usize {
-        // Odd multipliers with well-mixed high bits (the golden ratio's and a like one's) spread
-        // neighbouring cells over the buckets; the high half is folded in because only low bits are kept.
+        // Odd multipliers with well-mixed high bits (the golden ratio's and a similar one's) spread neighbouring
+        // cells over the buckets. The high half is folded in because only low bits are kept.
         let mixed = (x as u64)
             .wrapping_mul(0x9e37_79b9_7f4a_7c15)
             .wrapping_add((y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f));
@@ -178,7 +178,7 @@ impl Grid {
     }
 }
 
-/// A tree over discs. Which pairs it finds depends on the discs alone, not on how it came about.
+/// A tree over discs. The pairs it finds depend only on the discs, not on its history.
 #[derive(Clone, Default)]
 struct Tree {
     tree: Bvh,
@@ -192,7 +192,7 @@ impl std::fmt::Debug for Tree {
 }
 
 impl Tree {
-    /// Brings the tree up to date with discs (centre, radius; m), always the same number of them.
+    /// Updates the tree to discs (centre, radius; m). Their number must not change.
     fn update(&mut self, discs: impl Iterator<Item = (DVec2, f64)>) {
         let boxes = discs
             .map(|(centre, radius)| Aabb::from_half_extents(centre, DVec2::splat(radius)))
@@ -208,7 +208,7 @@ impl Tree {
         self.tree.optimize_incremental(&mut self.workspace);
     }
 
-    /// Calls `found` once with every pair of discs whose bounding squares overlap.
+    /// Calls `found` once for every pair of discs whose bounding squares overlap.
     fn pairs(&mut self, mut found: impl FnMut(u32, u32)) {
         self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut found);
     }

@@ -1,11 +1,10 @@
 //! The pairs that may touch soon, kept until some grain has moved far enough to change them.
 //!
-//! Each body has a skin, and a pair is a candidate while its gap is below its two skins together. No
-//! pair outside the list can touch before one of its bodies has gone through its own skin, so the list
-//! is built anew only when one has. A skin is part of the mean diameter, but no larger than the disc:
-//! so each disc has few candidates among those of its size and larger, and the list grows with the
-//! number of discs, whatever their sizes. Candidates are sorted by (i, other): the order of contacts
-//! depends on positions and numbering alone, not on when the list was built.
+//! Each body has a skin, and a pair is a candidate if its gap is below the sum of its two skins. No pair outside the
+//! list can touch before one of its bodies has moved by its own skin, so the list is rebuilt only then. A skin is a
+//! fraction of the mean diameter, but not larger than the disc. So each disc has few candidates among discs of its
+//! size and larger, and the list grows with the number of discs, whatever their sizes. Candidates are sorted by (i,
+//! other): the order of contacts depends only on positions and numbering, not on when the list was built.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -22,45 +21,45 @@ use crate::world::{Carry, World};
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// Pairs with a gap below this are candidates; where one disc is smaller than that, fewer.
+    /// Pairs with a gap below this are candidates. Fewer if one disc is smaller than that.
     pub skin: f64,
-    /// Pairs with a gap below this touch: 0 but for a rounding tolerance.
+    /// Pairs with a gap below this touch. 0 except for a rounding tolerance.
     pub gap_tolerance: f64,
 }
 
 /// Candidate pairs of a world.
 ///
-/// In a file are those that were found, and from where: when they are found anew hangs on it. All else is
-/// the world's, as in a search that begins.
+/// A file contains the pairs found and the positions at which they were found, because the rebuild schedule depends on
+/// them. All other fields are rebuilt from the world.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Candidates {
     reach: Reach,
     #[serde(skip)]
     features: Vec<Feature>,
-    /// The boundary that each feature is a part of, by its number.
+    /// The index of the boundary that each feature is a part of.
     #[serde(skip)]
     boundary_of: Vec<usize>,
-    /// Longest way that a feature can have gone since the last build, as far as grains see it, m.
+    /// Longest displacement of a feature since the last build, as seen by grains, m.
     way_of_features: f64,
-    /// Longest way that a fixed disc can have gone since then, m.
+    /// Longest displacement of a fixed disc since then, m.
     way_of_discs: f64,
-    /// Way that images beyond a border have gone beside their discs since then, m.
+    /// Displacement since then of images beyond a border relative to their discs, m.
     way_of_images: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
-    /// Radii of grains, then of fixed discs.
+    /// Radii of grains, then of fixed discs, m.
     #[serde(skip)]
     radii: Vec<f64>,
-    /// Their skins at the last build, m: how far each may go before the list is built anew.
+    /// Skins of these bodies at the last build, m: how far each may move before the list is rebuilt.
     skins: Vec<f64>,
     skin_of_features: f64,
-    /// Their centres at the last build.
+    /// Centres of these bodies at the last build, m.
     centres: Vec<DVec2>,
-    /// Pairs of discs in the order that they are found in.
+    /// Pairs of discs in the order in which they were found.
     #[serde(skip)]
     pairs: Vec<(u32, u32)>,
-    /// Grain i's candidates are `others[starts[i] .. starts[i + 1]]`, rising.
+    /// Grain i's candidates are `others[starts[i] .. starts[i + 1]]`, in increasing order.
     starts: Vec<u32>,
     others: Vec<u32>,
 }
@@ -69,7 +68,7 @@ impl Candidates {
     /// Prepares the search in a world.
     ///
     /// # Errors
-    /// Where a boundary makes no shape.
+    /// If a boundary has no valid shape.
     pub fn new(world: &World, reach: Reach) -> Result<Self> {
         let (mut features, mut boundary_of) = (Vec::new(), Vec::new());
         for (index, boundary) in world.boundaries.iter().enumerate() {
@@ -97,10 +96,10 @@ impl Candidates {
         })
     }
 
-    /// Those that were read from a file, in the world that they are of.
+    /// Completes candidates read from a file, in the world they belong to.
     ///
     /// # Errors
-    /// Where they tell of bodies that do not exist.
+    /// If they refer to bodies that do not exist.
     pub(crate) fn complete(self, world: &World) -> Result<Self> {
         let Self { reach, way_of_features, way_of_discs, way_of_images, .. } = self;
         let Self { skins, skin_of_features, centres, starts, others, .. } = self;
@@ -125,8 +124,8 @@ impl Candidates {
         Ok(Self { skins, centres, starts, others, ..whole })
     }
 
-    /// Unit normal of a feature towards `centre` and distance from it (m), as [`Feature::distance`] has them, or those
-    /// of its nearest image where borders are periodic.
+    /// Unit normal of a feature towards `centre` and distance from it (m), as in [`Feature::distance`]. With periodic
+    /// borders, those of the feature's nearest image.
     #[inline]
     pub(crate) fn distance(
         &self,
@@ -140,7 +139,7 @@ impl Candidates {
         }
     }
 
-    /// The boundaries' features.
+    /// The features of the boundaries.
     pub(crate) fn features(&self) -> &[Feature] {
         &self.features
     }
@@ -150,13 +149,13 @@ impl Candidates {
         seam_search::find(&mut self.features, &self.boundary_of, world);
     }
 
-    /// The number of the boundary that a feature is a part of.
+    /// The index of the boundary that a feature is a part of.
     pub(crate) fn boundary_of(&self, feature: usize) -> usize {
         self.boundary_of[feature]
     }
 
-    /// Has features follow their boundaries, which have just been carried; `carry_of` gives the way of a boundary
-    /// by its number. Discs have gone by `way_of_discs` at the most, m.
+    /// Moves the features with their boundaries, which have just moved. `carry_of` gives a boundary's displacement by
+    /// its index. Discs have moved by at most `way_of_discs`, m.
     pub(crate) fn follow<'a>(
         &mut self,
         world: &World,
@@ -166,7 +165,8 @@ impl Candidates {
         let mut longest = 0f64;
         for (feature, &boundary) in self.features.iter_mut().zip(&self.boundary_of) {
             let Some(carry) = carry_of(boundary) else { continue };
-            // What a half-space does to its distance from a grain grows with how far that is from the pivot.
+            // A turning half-space changes its distance from a grain in proportion to the grain's distance from the
+            // pivot.
             let far = |from: f64, place: DVec2| from.max(place.distance(carry.pivot));
             let reach = match (carry.angle == 0.0, feature.is_half_space()) {
                 (true, _) => 0.0,
@@ -180,7 +180,7 @@ impl Candidates {
         self.way_of_discs += way_of_discs;
     }
 
-    /// Takes note that images beyond a border have gone by so much beside their discs, m.
+    /// Records that images beyond a border have moved by `way` relative to their discs, m.
     pub(crate) fn slide(&mut self, way: f64) {
         self.way_of_images += way.abs();
     }
@@ -190,18 +190,18 @@ impl Candidates {
         self.reach.gap_tolerance
     }
 
-    /// Candidates of grain `index`, rising.
+    /// Candidates of grain `index`, in increasing order.
     pub fn of(&self, index: usize) -> &[u32] {
         &self.others[self.starts[index] as usize..self.starts[index + 1] as usize]
     }
 
-    /// Builds the list anew if the grains have moved too far for the present one; tells whether.
+    /// Rebuilds the list if the grains have moved too far for the present one. Returns true if it did.
     pub fn update<const AXES: usize>(&mut self, world: &World) -> bool {
         self.update_ahead::<AXES>(world, |_| 0.0, 0.0)
     }
 
-    /// The same where pairs are asked for that have a gap: one that the ways of their bodies close (m),
-    /// a grain's own and that of all that is no grain.
+    /// Like [`update`](Self::update), but also lists pairs whose gap the displacements of their bodies (m) can close:
+    /// `way_of_grain` for a grain, `way_of_others` for walls and fixed discs.
     pub(crate) fn update_ahead<const AXES: usize>(
         &mut self,
         world: &World,
@@ -230,7 +230,7 @@ impl Candidates {
         !still_good
     }
 
-    /// Makes each skin at least twice the way ahead, so that the list is good for more than one step.
+    /// Makes each skin at least twice the expected displacement, so that the list lasts more than one step.
     fn set_skins(&mut self, grains: usize, of_grain: impl Fn(usize) -> f64, of_others: f64) {
         let usual = 0.5 * self.reach.skin;
         self.skin_of_features = usual.max(2.0 * of_others);
@@ -251,7 +251,7 @@ impl Candidates {
         let extent = |at: usize| self.radii[at] + self.skins[at];
         let keep = |i: u32, j: u32| {
             let (first, second) = (i.min(j) as usize, i.max(j) as usize);
-            // Fixed discs come last: a pair whose first is one moves nothing.
+            // Fixed discs come last, so in a pair whose first disc is fixed nothing moves.
             if first < grain_count
                 && length::<AXES>(world.shortest(centres[first] - centres[second]))
                     < extent(first) + extent(second)
@@ -270,7 +270,7 @@ impl Candidates {
         self.add_features(world);
     }
 
-    /// Sorts the pairs by counting: into `others`, by their first grain.
+    /// Sorts the pairs by their first grain into `others`, with a counting sort.
     fn sort_pairs(&mut self, grain_count: usize) {
         self.starts.clear();
         self.starts.resize(grain_count + 1, 0);
@@ -282,7 +282,7 @@ impl Candidates {
         }
         self.others.clear();
         self.others.resize(self.pairs.len(), 0);
-        // Each stretch is filled from its start, which moves to its end meanwhile.
+        // Fill each range from its start; the start moves to the range's end meanwhile.
         for &(first, second) in &self.pairs {
             let place = &mut self.starts[first as usize];
             self.others[*place as usize] = second;
@@ -296,7 +296,7 @@ impl Candidates {
         }
     }
 
-    /// Adds the features within reach behind each grain's discs.
+    /// Appends the features within reach to each grain's discs.
     fn add_features(&mut self, world: &World) {
         if self.features.is_empty() {
             return;
@@ -307,7 +307,7 @@ impl Candidates {
             let reach = grains.radii[index] + self.skins[index] + self.skin_of_features;
             images::distance_to_any_point(feature, world, grains.positions[index]) < reach
         };
-        // The pairs are no longer needed: their memory takes the longer list.
+        // The pairs are no longer needed: reuse their memory for the longer list.
         self.pairs.clear();
         for index in 0..grains.len() {
             let grain = index as u32;
@@ -323,7 +323,7 @@ impl Candidates {
     }
 }
 
-/// Length of a way: along x alone where the scene has one axis.
+/// Length of a vector: along x alone in scenes with one axis.
 #[inline(always)]
 fn length<const AXES: usize>(way: DVec2) -> f64 {
     if AXES == 1 { way.x.abs() } else { way.length() }
@@ -334,7 +334,7 @@ mod tests {
     use super::*;
     use crate::world::{Grain, Grains, Gravity};
 
-    /// Discs in rows, three radii from centre to centre, of radii that are given in turn.
+    /// Discs in rows, with centres three radii apart; their radii repeat `radii`.
     fn rows(count: usize, radii: &[f64], mean_diameter: f64) -> World {
         let largest = radii.iter().copied().fold(0.0, f64::max);
         let columns = (count as f64).sqrt() as usize;
@@ -359,7 +359,7 @@ mod tests {
         assert!(candidates.update::<2>(&world));
         let at_rest = candidates.others.len();
         let fast = 777;
-        // It sees all others, and nothing else becomes a candidate.
+        // It sees all others, and no other pair becomes a candidate.
         let way = |grain: usize| if grain == fast { 1e3 } else { 0.0 };
         assert!(candidates.update_ahead::<2>(&world, way, 0.0));
         assert_eq!(candidates.others.len(), at_rest + count - 1);
@@ -378,7 +378,7 @@ mod tests {
             candidates.update::<2>(&world);
             assert!(candidates.others.len() < 24 * count, "{}", candidates.others.len());
         }
-        // Next to one that is as large as all of them.
+        // The same next to a disc as large as all of them together.
         let count = 4_000;
         let mut world = rows(count, &[1e-3], 1.0);
         let large = Grain::at_rest(DVec2::new(-2.0, 0.0), 2.0);

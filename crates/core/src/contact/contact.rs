@@ -1,4 +1,4 @@
-//! One contact, its impulses, and the memory that schemes keep of it.
+//! One contact, its impulses, and the data that steppers keep of it.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -9,16 +9,16 @@ use serde::{Deserialize, Serialize};
 pub struct Contact {
     /// Grain i.
     pub grain: u32,
-    /// Body j, numbered through ([`Numbering`](super::Numbering)).
+    /// Body j, in the joint numbering ([`Numbering`](super::Numbering)).
     pub other: u32,
-    /// n, from j to i. On a line its y component is 0.
+    /// Normal n, from j to i. On a line its y component is 0.
     pub normal: DVec2,
-    /// m; negative is overlap.
+    /// Gap, m; negative for an overlap.
     pub gap: f64,
 }
 
 impl Contact {
-    /// The bodies (i, other), which contacts are sorted by.
+    /// The bodies (i, other), the sort key of contacts.
     pub(crate) fn pair(&self) -> (u32, u32) {
         (self.grain, self.other)
     }
@@ -28,23 +28,23 @@ impl Contact {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Impulse {
-    /// P_n.
+    /// Normal impulse P_n.
     pub normal: f64,
-    /// P_t.
+    /// Tangential impulse P_t.
     pub tangential: f64,
 }
 
-/// What a stepping scheme keeps of a contact from one substep to the next, whatever its length. A
-/// method that solves the step's problem neither reads nor writes it.
+/// Data that a stepper keeps of a contact from one substep to the next. Solvers of the step problem neither read nor
+/// write it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactMemory {
-    /// How far the tangential spring is stretched, m; positive as v_t is.
+    /// Stretch of the tangential spring, m; same sign as v_t.
     pub tangential_displacement: f64,
-    /// N of the last substep, newton.
+    /// Normal force N of the last substep, newton.
     pub normal_force: f64,
-    /// T of the last substep, newton.
+    /// Tangential force T of the last substep, newton.
     pub tangential_force: f64,
-    /// Stiffness of the penalty along normal and tangent, N/m.
+    /// Penalty stiffness along normal and tangent, N/m.
     pub stiffness: [f64; 2],
 }

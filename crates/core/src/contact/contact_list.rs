@@ -1,4 +1,4 @@
-//! The contacts of one step, with the impulses of the step before where a contact lives on.
+//! The contacts of one step. A contact that existed in the step before keeps its impulses.
 
 use std::ops::Range;
 
@@ -16,10 +16,10 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::World;
 
-/// Grains whose contacts one thread finds at a time: a hundred microseconds of work.
+/// Grains whose contacts one thread finds at a time: about a hundred microseconds of work.
 const GRAINS_IN_PART: usize = 2048;
 
-/// What a stepping scheme reads and changes of contacts, a column each.
+/// The contact data that a stepper reads and changes, as separate columns.
 pub(crate) struct ContactParts<'a> {
     pub contacts: &'a [Contact],
     pub found_in: &'a [u64],
@@ -33,37 +33,37 @@ pub(crate) struct ContactParts<'a> {
 #[serde(deny_unknown_fields)]
 pub struct ContactList {
     now: ContactColumns,
-    /// Memory alone: the next step fills it.
+    /// Kept for its memory only: the next step fills it.
     #[serde(skip)]
     before: ContactColumns,
-    /// Memory alone: what threads find, each of some grains.
+    /// Kept for its memory only: the contacts that each thread finds.
     #[serde(skip)]
     parts: Vec<ContactColumns>,
-    /// True where pairs with a gap are among the contacts.
+    /// True if pairs with a gap are among the contacts.
     looks_ahead: bool,
-    /// The step that contacts are found in from now on.
+    /// Index of the present step, recorded for contacts found from now on.
     step: u64,
-    /// What pairs transmit in a step that is taken in pieces; nothing where it is taken as a whole.
+    /// Sums transmitted by pairs in a step that is taken in pieces; empty if the step is taken as a whole.
     sums: StepSums,
-    /// True where the present step is summed up.
+    /// True if the present step is summed up.
     #[serde(skip)]
     is_summed_up: bool,
 }
 
 impl ContactList {
-    /// Says which step contacts are found in from now on.
+    /// Sets the index of the step in which contacts are found from now on.
     pub(crate) fn begin_step(&mut self, step: u64) {
         self.step = step;
         self.sums.clear();
         self.is_summed_up = false;
     }
 
-    /// Says that the step is taken in pieces.
+    /// Declares that the step is taken in pieces.
     pub(crate) fn begin_sums(&mut self) {
         self.is_summed_up = true;
     }
 
-    /// Counts the impulses of a piece of the step.
+    /// Adds the impulses of a piece of the step to the sums.
     pub(crate) fn sum_up(&mut self) {
         if self.is_summed_up {
             for index in 0..self.now.contacts.len() {
@@ -72,23 +72,24 @@ impl ContactList {
         }
     }
 
-    /// Counts an impulse of a contact along a normal, which may have turned since the contact was found.
+    /// Adds an impulse of a contact along `normal`, which may have turned since the contact was found.
     pub(crate) fn add_to_sums(&mut self, index: usize, normal: DVec2, impulse: Impulse) {
         let ContactColumns { contacts, found_in, .. } = &self.now;
         self.sums.add(Transmitted::of(contacts[index], found_in[index], normal, impulse));
     }
 
-    /// What the pair of a contact has transmitted in a step that is summed up.
+    /// Total impulse transmitted by the pair of a contact in a step that is summed up.
     pub(crate) fn sum_of(&self, contact: &Contact) -> Impulse {
         self.sums.of(contact.pair())
     }
 
-    /// True where what is transmitted is that of a whole step, and not of its last piece.
+    /// True if the transmitted impulses are those of a whole step, not of its last piece.
     pub(crate) fn has_sums(&self) -> bool {
         !self.sums.pairs.is_empty()
     }
 
-    /// What pairs transmitted in the last step: all that did, sorted, once in a step that is summed up.
+    /// Impulses transmitted in the last step, sorted by pair, each pair once. In a step that is summed up, from the
+    /// sums.
     pub(crate) fn transmitted_in_step(&self) -> impl Iterator<Item = Transmitted> + '_ {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
         let is_whole = !self.has_sums();
@@ -99,7 +100,8 @@ impl ContactList {
         self.sums.pairs.iter().copied().chain(of_contacts)
     }
 
-    /// What the last step's pairs transmitted, sorted, each with its place among the contacts if it still is one.
+    /// Impulses transmitted in the last step, sorted by pair, each with its index among the contacts if it still is a
+    /// contact.
     pub(crate) fn transmitted(&self) -> Vec<(Transmitted, Option<usize>)> {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
         let whole = !self.has_sums();
@@ -111,7 +113,7 @@ impl ContactList {
         let of_contacts = contacts.iter().zip(impulses).enumerate().map(of_contact);
         let sums = self.sums.pairs.iter().map(|pair| (*pair, None));
         let mut all: Vec<_> = sums.chain(of_contacts).collect();
-        // The sort is stable: what is summed up comes first.
+        // The sort is stable, so the sum of a pair comes first.
         all.sort_by_key(|(pair, _)| pair.contact.pair());
         all.dedup_by(|second, first| {
             let is_same = second.0.contact.pair() == first.0.contact.pair();
@@ -126,22 +128,22 @@ impl ContactList {
         &self.now.contacts
     }
 
-    /// The impulses, one a contact.
+    /// The impulses, one per contact.
     pub fn impulses(&self) -> &[Impulse] {
         &self.now.impulses
     }
 
-    /// The impulses, one a contact, to be filled in by the solver.
+    /// Mutable impulses, one per contact, for the solver to fill in.
     pub fn impulses_mut(&mut self) -> &mut [Impulse] {
         &mut self.now.impulses
     }
 
-    /// What a stepping scheme keeps, one a contact.
+    /// Data kept by the stepper, one per contact.
     pub fn memories(&self) -> &[ContactMemory] {
         &self.now.memories
     }
 
-    /// The contacts and the steps that they were found in, with impulses, memories and sums to be changed.
+    /// Contacts and the steps in which they were found, with mutable impulses, memories and sums.
     pub(crate) fn parts_mut(&mut self) -> ContactParts<'_> {
         let ContactColumns { contacts, impulses, memories, found_in, .. } = &mut self.now;
         ContactParts { contacts, found_in, impulses, memories, sums: &mut self.sums }
@@ -152,27 +154,27 @@ impl ContactList {
         &self.now.found_in
     }
 
-    /// The contacts with their bonds, one a contact; they mean something under the law `range` alone.
+    /// The bonds, one per contact. Only the law `range` gives them meaning.
     pub(crate) fn bonds(&self) -> &[Bond] {
         &self.now.bonds
     }
 
-    /// The bonds, to be changed.
+    /// The bonds, mutable.
     pub(crate) fn bonds_mut(&mut self) -> &mut [Bond] {
         &mut self.now.bonds
     }
 
-    /// True where pairs with a gap are among the contacts.
+    /// True if pairs with a gap are among the contacts.
     pub(crate) fn looks_ahead(&self) -> bool {
         self.looks_ahead
     }
 
-    /// True where the pair of a contact touches or is bonded, and does not just come near.
+    /// True if the pair of a contact touches or is bonded. False if it is only near.
     pub fn is_in_touch(&self, index: usize) -> bool {
         !self.looks_ahead || self.now.bonds[index].alive
     }
 
-    /// Empties the memories and sums: what comes next was not prepared by the scheme that filled them.
+    /// Clears the memories and sums, because the next stepper did not write them.
     pub(crate) fn forget(&mut self) {
         self.now.memories.fill(ContactMemory::default());
         self.sums.clear();
@@ -186,7 +188,7 @@ impl ContactList {
         }
     }
 
-    /// Drops the contacts of a body, and numbers those after it one lower.
+    /// Removes the contacts of a body, and decreases the indices above it by one.
     pub(crate) fn remove_body(&mut self, body: u32) {
         let ContactColumns { contacts, impulses, memories, bonds, found_in } = &mut self.now;
         let stays = |contact: &Contact| contact.grain != body && contact.other != body;
@@ -205,13 +207,13 @@ impl ContactList {
         }
     }
 
-    /// The contacts, and those that the step has had.
+    /// The contacts, and the contacts recorded in the step's sums.
     fn all_mut(&mut self) -> impl Iterator<Item = &mut Contact> {
         let earlier = self.sums.pairs.iter_mut().map(|pair| &mut pair.contact);
         self.now.contacts.iter_mut().chain(earlier)
     }
 
-    /// Makes room among the bodies for one more of that number, which touches none yet.
+    /// Makes room for a new body with index `body`, which touches no other yet.
     pub(crate) fn insert_body(&mut self, body: u32) {
         for contact in self.all_mut() {
             contact.grain += u32::from(contact.grain >= body);
@@ -219,8 +221,8 @@ impl ContactList {
         }
     }
 
-    /// True where its lists are of one length and tell of bodies that exist, of which there are so many, the
-    /// first of them grains.
+    /// True if all lists have the same length and refer to existing bodies. There are `bodies` bodies, the first
+    /// `grains` of which are grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
         let ContactColumns { contacts, impulses, memories, bonds, found_in } = &self.now;
         let lengths = [impulses.len(), memories.len(), bonds.len(), found_in.len()];
@@ -233,16 +235,15 @@ impl ContactList {
             && found_in.iter().all(is_past)
     }
 
-    /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A
-    /// contact that was there the step before starts from its impulses and its memory of then, any
-    /// other from 0.
+    /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A contact that existed
+    /// in the step before starts from its previous impulses and memory, any other from 0.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
         self.looks_ahead = false;
         let gap_tolerance = candidates.gap_tolerance();
         self.find::<AXES>(world, candidates, |contact, _| contact.gap < gap_tolerance);
     }
 
-    /// Finds the pairs that touch, that are bonded, or that may come to touch within the step.
+    /// Finds the pairs that touch, are bonded, or may touch within the step.
     pub(crate) fn detect_ahead<const AXES: usize>(
         &mut self,
         world: &World,
@@ -282,7 +283,7 @@ impl ContactList {
         });
     }
 
-    /// Takes the candidates of which `keep` says, by normal, gap and bond, that they are contacts.
+    /// Takes the candidates for which `keep` returns true, given the contact and its bond.
     #[inline(always)]
     fn find<const AXES: usize>(
         &mut self,
@@ -306,9 +307,9 @@ impl ContactList {
         now.take_all(parts);
     }
 
-    /// Moves grains that overlap by more than `allowed` (m) apart, pair by pair, each grain by the
-    /// other's share of the mass. Velocities, and so kinetic energy, stay as they are. Whether there
-    /// were any: one pass opens a pair and may close the next.
+    /// Separates bodies that overlap by more than `allowed` (m), pair by pair. Each grain of a pair moves in
+    /// proportion to the other's mass. Velocities, and so the kinetic energy, stay the same. Returns true if there
+    /// were any such overlaps: one pass may open one pair and close the next.
     pub(crate) fn separate(
         &self,
         world: &mut World,
@@ -341,7 +342,7 @@ impl ContactList {
     }
 }
 
-/// What is kept of contacts from one step to the next, a column each.
+/// Data kept of contacts from one step to the next, as columns.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ContactColumns {
@@ -349,7 +350,7 @@ struct ContactColumns {
     impulses: Vec<Impulse>,
     memories: Vec<ContactMemory>,
     bonds: Vec<Bond>,
-    /// The step that each was first found in.
+    /// The step in which each contact was first found.
     found_in: Vec<u64>,
 }
 
@@ -363,7 +364,7 @@ impl ContactColumns {
         found_in.clear();
     }
 
-    /// Takes what several have, one after the other, in place of its own.
+    /// Replaces the contents by the concatenation of `parts`.
     fn take_all(&mut self, parts: &[Self]) {
         fn join<'a, T: Copy + 'a>(all: &mut Vec<T>, parts: impl Iterator<Item = &'a Vec<T>>) {
             parts.for_each(|part| all.extend_from_slice(part));
@@ -385,19 +386,19 @@ impl ContactColumns {
     }
 }
 
-/// How contacts are found.
+/// Inputs of the search for contacts.
 struct ContactSearch<'a> {
     world: &'a World,
     candidates: &'a Candidates,
     /// The contacts of the step before.
     before: &'a ContactColumns,
-    /// True where pairs with a gap are among the contacts.
+    /// True if pairs with a gap are among the contacts.
     looks_ahead: bool,
     step: u64,
 }
 
 impl ContactSearch<'_> {
-    /// Finds the contacts of some grains, one after the other.
+    /// Finds the contacts of a range of grains, in order.
     #[inline(always)]
     fn find<const AXES: usize>(
         &self,
@@ -417,7 +418,7 @@ impl ContactSearch<'_> {
                 let found = approach(world, candidates, position, radius, body, AXES);
                 let Some((normal, gap)) = found else { continue };
                 let contact = Contact { grain: index as u32, other, normal, gap };
-                // Both lists are sorted alike, so one walk over the old one serves all.
+                // Both lists have the same order, so one walk over the old list suffices.
                 while before < old.contacts.len() && old.contacts[before].pair() < contact.pair() {
                     before += 1;
                 }
@@ -428,7 +429,7 @@ impl ContactSearch<'_> {
                 } else {
                     Default::default()
                 };
-                // What only came near so far is found where it touches.
+                // A pair that only came near so far counts as found when it touches.
                 let was_found = lives_on && (bond.alive || !looks_ahead);
                 if !keep(&contact, &mut bond) {
                     continue;

@@ -1,4 +1,4 @@
-//! Fixed shapes, taken apart into features that a disc touches in one point each.
+//! Fixed shapes, divided into features that a disc touches in one point each.
 
 use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
@@ -18,33 +18,33 @@ pub(crate) enum Feature {
         /// The half-space through the origin.
         shape: HalfSpace,
     },
-    /// A segment, solid from both sides. Where it follows or precedes another one of its polyline,
-    /// the shared corner is told once: by the later segment, and only where both have it as their
-    /// nearest point (elsewhere the other's inner part is nearer).
+    /// A segment, solid from both sides. If it follows or precedes another one of its polyline, only the later
+    /// segment reports the shared corner, and only if the corner is the nearest point of both. Otherwise the other
+    /// segment's inner part is nearer.
     Segment {
         /// The segment.
         shape: Segment,
-        /// The one before it.
+        /// The previous segment.
         before: Option<Segment>,
-        /// True where another one follows.
+        /// True if another segment follows.
         has_next: bool,
-        /// Its ends that other boundaries have as well.
+        /// Its ends that belong to other boundaries too.
         seams: Seams,
     },
     /// A solid convex polygon, anticlockwise.
     ConvexPolygon {
         /// Its sides.
         sides: Vec<Segment>,
-        /// Its corners that other boundaries have as well.
+        /// Its corners that belong to other boundaries too.
         seams: Seams,
     },
 }
 
 impl Feature {
-    /// Takes a boundary apart and appends its features to `features`.
+    /// Divides a boundary into features and appends them to `features`.
     ///
     /// # Errors
-    /// Names the boundary (`field`) and the part of it that makes no shape.
+    /// Names the boundary (`field`) and the part of it that is not a valid shape.
     pub(crate) fn collect(
         boundary: &Boundary,
         field: &str,
@@ -88,7 +88,7 @@ impl Feature {
         Ok(())
     }
 
-    /// `name` gives what the user calls a point.
+    /// Checks a chain of points and appends its segments. `name` gives the user's name of a point.
     fn collect_chain(
         points: &[DVec2],
         field: &str,
@@ -118,7 +118,8 @@ impl Feature {
         Ok(())
     }
 
-    /// Follows its boundary, which has just been carried: to the last bit what would be made of it anew.
+    /// Moves with its boundary, which has just moved. The result equals that of rebuilding the feature, to the last
+    /// bit.
     pub(crate) fn carry(&mut self, carry: &Carry, boundary: &Boundary) {
         let follow = |segment: &mut Segment| {
             (segment.a, segment.b) = (carry.place(segment.a), carry.place(segment.b));
@@ -142,7 +143,7 @@ impl Feature {
         }
     }
 
-    /// Its corners that other boundaries have as well; a half-space has no corners.
+    /// Its corners that belong to other boundaries too; `None` for a half-space.
     pub(super) fn seams_mut(&mut self) -> Option<&mut Seams> {
         match self {
             Feature::HalfSpace { .. } => None,
@@ -160,13 +161,13 @@ impl Feature {
         segment.into_iter().flatten().chain(sides.iter().map(|side| side.a))
     }
 
-    /// True where it is a half-space.
+    /// True if it is a half-space.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Feature::HalfSpace { .. })
     }
 
-    /// Distance of `centre` from the surface (m), corners that another feature tells of included:
-    /// they may be this one's a moment later. Negative in solids.
+    /// Distance of `centre` from the surface (m), including corners that another feature reports, because this
+    /// feature may report them a moment later. Negative in solids.
     pub(crate) fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
@@ -180,8 +181,8 @@ impl Feature {
         }
     }
 
-    /// Unit normal towards `centre` and distance of `centre` from the surface (m, negative inside),
-    /// or nothing where another feature tells of this point.
+    /// Unit normal towards `centre` and distance of `centre` from the surface (m, negative inside). `None` if another
+    /// feature reports this point.
     pub(crate) fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
         match self {
             Feature::HalfSpace { point, shape } => {
@@ -213,7 +214,7 @@ impl Feature {
                 Some(outward(centre, nearest.point, left_of(shape)))
             }
             Feature::ConvexPolygon { sides, seams } => {
-                // Outside, the surface's nearest point is that of the nearest side.
+                // Outside, the nearest point of the surface is that of the nearest side.
                 let (normal, depth) = way_out(sides, centre);
                 if depth <= 0.0 {
                     return Some((normal, depth));
@@ -234,8 +235,8 @@ impl Feature {
     }
 }
 
-/// The normal and the distance, m, of the side of a convex polygon whose line is nearest to a place inside: the way out. The
-/// distance is above 0 outside.
+/// Outward normal of the side of a convex polygon whose line is nearest to a point inside, and the signed distance,
+/// m, which is positive outside.
 fn way_out(sides: &[Segment], place: DVec2) -> (DVec2, f64) {
     let lines = sides.iter().map(|side| (-left_of(side), (place - side.a).dot(-left_of(side))));
     lines.fold(
@@ -249,7 +250,7 @@ fn left_of(segment: &Segment) -> DVec2 {
     (segment.b - segment.a).perp().normalize_or_zero()
 }
 
-/// Unit normal and distance from `nearest` to `centre`; `fallback` where the two coincide.
+/// Unit normal and distance from `nearest` to `centre`; `fallback` is the normal if the two coincide.
 fn outward(centre: DVec2, nearest: DVec2, fallback: DVec2) -> (DVec2, f64) {
     let offset = centre - nearest;
     let distance = offset.length();
@@ -263,9 +264,9 @@ fn check_finite(points: &[DVec2], name: impl Fn(usize) -> String) -> Result<()> 
     }
 }
 
-/// Checks that corners go once around a convex polygon, anticlockwise. A pentagram turns left at each
-/// corner as well, but goes around twice: on one round the direction of the sides comes but once
-/// from below into the upper half of the plane.
+/// Checks that corners go once around a convex polygon, anticlockwise. A pentagram also turns left at each corner,
+/// but goes around twice. On a single round the sides' direction passes only once from below into the upper half of
+/// the plane.
 fn check_convex(points: &[DVec2], field: &str) -> Result<()> {
     let count = points.len();
     if count < 3 {

@@ -1,13 +1,13 @@
 //! Candidates across periodic borders.
 //!
-//! **Discs.** Those that lie near the left border are looked for once more beyond the right one, a period on, and so are
-//! those near the lower one, above, and those near its corners. A pair is told by that of its images whose offset is
-//! the shortest, so no pair is told twice, however far the search looks.
+//! **Discs.** Discs near the left border are repeated one period further, beyond the right border. Discs near the
+//! lower border are repeated above, and discs near the corners likewise. Only the images with the shortest offset
+//! report a pair, so that each pair is reported once, however far the search looks.
 //!
-//! Where borders shear, images above lean to a side and wrap again there, before those beside them are looked for.
+//! With sheared borders, images above are shifted sideways and wrapped before the images beside them are looked for.
 //!
-//! **Shapes** with ends lie in the cell. A disc near a border may be nearest to an image of theirs, so the disc is tried
-//! where it is and a period to each side.
+//! **Shapes** with ends lie in the cell. A disc near a border may be nearest to an image of a shape, so the disc is
+//! tried at its own place and one period to each side.
 
 use glam::DVec2;
 
@@ -15,12 +15,12 @@ use super::broad_phase::BroadPhase;
 use super::features::Feature;
 use crate::world::{Periodic, World};
 
-/// The images of a disc that others are looked for around, in periods: half of those around the cell, since of a pair
-/// across a border either disc can be the one in the cell.
+/// Periods from a disc to those of its images that are searched: half of the images around the cell, because either
+/// disc of a pair across a border can be the one in the cell.
 const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0, 1.0)];
 
-/// Calls `found` once with every pair of discs, by their numbers, whose nearest images are nearer to each other than
-/// their extents together: radii with skins, m. And with some others.
+/// Calls `found` once for every pair of discs, given by indices, whose nearest images are closer than the sum of
+/// their extents (radii with skins, m), and for some other pairs.
 pub(super) fn pairs<const AXES: usize>(
     broad_phase: &mut BroadPhase,
     periodic: Periodic,
@@ -33,7 +33,7 @@ pub(super) fn pairs<const AXES: usize>(
     let mut places: Vec<DVec2> = centres.iter().map(|&centre| periodic.wrap(centre)).collect();
     let mut extents: Vec<f64> = extents.collect();
     let size = DVec2::from(periodic.periods().map(|period| period.unwrap_or(0.0)));
-    // Which disc an image is of, and how many periods from it.
+    // The disc of each image, and the periods between them.
     let mut images: Vec<(u32, DVec2)> = Vec::new();
     for disc in 0..count {
         let place = places[disc];
@@ -50,7 +50,7 @@ pub(super) fn pairs<const AXES: usize>(
             extents.push(extents[disc]);
         }
     }
-    // A tree is kept for a number of discs that stays the same.
+    // A tree needs a constant number of discs.
     broad_phase.forget_discs();
     broad_phase.pairs::<AXES>(&places, extents.iter().copied(), |first, second| {
         let image = |place: u32| (place as usize).checked_sub(count).map(|number| images[number]);
@@ -61,14 +61,14 @@ pub(super) fn pairs<const AXES: usize>(
             (Some(_), Some(_)) => return,
         };
         let [from, to] = discs.map(|disc| places[disc as usize]);
-        // Whole periods from the second disc to that image of it which the first is nearest to.
+        // Whole periods from the second disc to its image that is nearest to the first.
         if periodic.whole(from - to) == told_by && discs[0] != discs[1] {
             found(discs[0], discs[1]);
         }
     });
 }
 
-/// True where a disc whose image is so many periods on, along an axis, is near enough to the border for that to show.
+/// True if a disc is near enough to a border that its image `periods` away along this axis matters.
 fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> bool {
     match borders {
         _ if periods == 0.0 => true,
@@ -78,7 +78,7 @@ fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> 
     }
 }
 
-/// Normal and distance of the nearest image of a feature, as [`Feature::distance`] has them.
+/// Normal and distance of the nearest image of a feature, as in [`Feature::distance`].
 pub(super) fn distance(
     feature: &Feature,
     periodic: Periodic,
@@ -91,7 +91,7 @@ pub(super) fn distance(
     distances.min_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
-/// The same of [`Feature::distance_to_any_point`], whether borders are periodic or not.
+/// The smallest [`Feature::distance_to_any_point`] over the images of a feature, with or without periodic borders.
 pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DVec2) -> f64 {
     match world.periodic {
         Some(periodic) if !feature.is_half_space() => {
@@ -102,7 +102,7 @@ pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DV
     }
 }
 
-/// Where a disc is in the cell, and a period to each side.
+/// The place of a disc in the cell, and one period to each side.
 fn places(periodic: Periodic, centre: DVec2) -> impl Iterator<Item = DVec2> {
     let centre = periodic.wrap(centre);
     periodic.around().map(move |by| centre + by)

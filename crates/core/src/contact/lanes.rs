@@ -1,13 +1,13 @@
-//! The numbers that a contact's arithmetic is written for.
+//! Number types over which a contact's arithmetic is generic.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 use fearless_simd::{Select, Simd, SimdBase, f64x4};
 
-/// A number, or one a lane of a vector register. Every lane does just what the number alone does,
-/// to the last bit, signed zeros and NaN included: the order of operations is the code's, and none
-/// are fused.
+/// A number, or a vector register with one number per lane. Each lane gives exactly the bits of the scalar code, also
+/// for signed zeros and NaN: operations are done in the order of the code, and multiplications and additions are not
+/// fused.
 pub trait Lanes:
     Copy
     + Debug
@@ -21,13 +21,13 @@ pub trait Lanes:
     + SubAssign
     + 'static
 {
-    /// `number` in as many lanes as `self` has.
+    /// `number` in each lane.
     fn same(self, number: f64) -> Self;
-    /// The larger of two numbers as one machine instruction; `other` where `self` is NaN.
+    /// The larger of two numbers in one machine instruction; `other` if `self` is NaN.
     fn larger(self, other: Self) -> Self;
-    /// The smaller of two numbers as one machine instruction; `other` where `self` is NaN.
+    /// The smaller of two numbers in one machine instruction; `other` if `self` is NaN.
     fn smaller(self, other: Self) -> Self;
-    /// The number without its sign.
+    /// The absolute value.
     fn magnitude(self) -> Self;
 }
 
@@ -83,11 +83,10 @@ impl<S: Simd> Lanes for f64x4<S> {
     }
 }
 
-/// True where the processor's own larger and smaller of two are the second where either is NaN, and of
-/// two zeros.
+/// True if the processor's own minimum and maximum return the second operand if either is NaN or both are zeros.
 const SECOND_WHERE_UNDECIDED: bool = cfg!(any(target_arch = "x86_64", target_arch = "x86"));
 
-/// Levels of vector instructions that this processor has.
+/// Vector instruction sets that this processor supports.
 #[cfg(test)]
 pub(crate) fn levels() -> Vec<fearless_simd::Level> {
     let best = fearless_simd::Level::new();

@@ -2,33 +2,33 @@
 //!
 //! Signorini's law with cohesion (paper eq. 3 and 8, Fig. 2b) asks 0 ≤ N + C₀ ⟂ v̄_n ≥ 0, with the
 //! formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Over one step N = P/Δt, and a positive factor
-//! does not change a complementarity. Divided by m_ij, with the reduced impulse λ = P/m_ij, the
-//! shifted reduced impulse σ = λ_n + C₀Δt/m_ij and u = v_n^n + ρ v_n^{n−1},
+//! does not change a complementarity condition. Divided by m_ij, with the reduced impulse λ = P/m_ij, the shifted
+//! reduced impulse σ = λ_n + C₀Δt/m_ij and u = v_n^n + ρ v_n^{n−1},
 //!
 //! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
 //!
-//! C₀Δt/m_ij = Bond·a·Δt is the capture speed, with a = g unless another acceleration is given. It is
-//! the same for every contact of a scene: in σ, cohesion is nothing but a constant pull that the contact pushes against, and the law without cohesion is
-//! that with a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the compressive
-//! part alone it is |λ_t| ≤ μ max(σ − capture speed, 0). Both are |λ_t| ≤ μ max(σ − c, 0) with the tip of the
-//! cone at c: the shifted one's is at 0, and a σ that the law allows is at least that.
+//! C₀Δt/m_ij = Bond·a·Δt is the capture speed, with a = g unless another acceleration is given. It is the same for
+//! every contact of a scene. In terms of σ, cohesion is only a constant pull against which the contact pushes, and
+//! the law without cohesion has a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the
+//! compressive part alone it is |λ_t| ≤ μ max(σ − capture speed, 0). Both have the form |λ_t| ≤ μ max(σ − c, 0), with
+//! the tip of the cone at c. For the shifted cone c is 0, and any σ that the law allows is at least 0.
 
 use super::lanes::Lanes;
 use crate::world::FrictionCone;
 
-/// The numbers of the contact law that all contacts of a step share.
+/// The parameters of the contact law shared by all contacts of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactLaw {
-    /// μ.
+    /// Friction coefficient μ.
     pub friction: f64,
     capture_speed: f64,
-    /// c, m/s.
+    /// Tip of the cone c, m/s.
     tip: f64,
     cone: FrictionCone,
 }
 
 impl ContactLaw {
-    /// The law of a friction μ, a capture speed C₀Δt/m_ij (m/s; 0 without cohesion) and a cone.
+    /// The law with friction μ, capture speed C₀Δt/m_ij (m/s; 0 without cohesion) and a cone.
     #[inline(always)]
     pub fn new(friction: f64, capture_speed: f64, cone: FrictionCone) -> Self {
         let tip = match cone {
@@ -38,30 +38,30 @@ impl ContactLaw {
         Self { friction, capture_speed, tip, cone }
     }
 
-    /// The same with another capture speed, m/s.
+    /// The same law with another capture speed, m/s.
     #[inline(always)]
     pub(crate) fn with_capture_speed(self, capture_speed: f64) -> Self {
         Self::new(self.friction, capture_speed, self.cone)
     }
 
-    /// C₀Δt/m_ij = Bond·a·Δt, m/s; 0 in a scene without cohesion.
+    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s; 0 in a scene without cohesion.
     #[inline(always)]
     pub fn capture_speed(&self) -> f64 {
         self.capture_speed
     }
 
-    /// Which part of the normal force rubs.
+    /// The part of the normal force that bounds friction.
     pub fn cone(&self) -> FrictionCone {
         self.cone
     }
 
-    /// True where all of σ rubs: the tip of the cone is at 0.
+    /// True if all of σ bounds friction, because the tip of the cone is at 0.
     #[inline(always)]
     pub(crate) fn all_rubs(&self) -> bool {
         self.tip == 0.0
     }
 
-    /// σ that rubs, m/s.
+    /// The part of σ that bounds friction, σ − c, m/s.
     #[inline(always)]
     pub(crate) fn rubbing<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse - shifted_impulse.same(self.tip)
@@ -74,25 +74,25 @@ impl ContactLaw {
     }
 }
 
-/// C₀ = Bond · m_ij · a, newton (paper eq. 10, where a is g).
+/// Cohesion C₀ = Bond · m_ij · a, newton (paper eq. 10, with a = g).
 pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) -> f64 {
     bond * effective_mass * acceleration
 }
 
-/// Projects σ (m/s) on σ ≥ 0.
+/// Projects σ (m/s) onto σ ≥ 0.
 #[inline(always)]
 pub(crate) fn signorini<T: Lanes>(shifted_impulse: T) -> T {
     shifted_impulse.larger(shifted_impulse.same(0.0))
 }
 
-/// Projects a tangential impulse on its absolute value ≤ `bound`, any unit.
+/// Projects a tangential impulse onto [−bound, bound], in any unit.
 #[inline(always)]
 pub(crate) fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
     tangential_impulse.larger(-bound).smaller(bound)
 }
 
-/// The point of |λ_t| ≤ μσ nearest to `trial`, in the metric diag(1, c) with c = m_n/m_t. With a trial (a, b): the trial
-/// itself where |b| ≤ μa, the apex where a + μc|b| ≤ 0, and else the point of the nearer edge that
+/// The point of |λ_t| ≤ μσ nearest to `trial`, in the metric diag(1, c) with c = m_n/m_t. For a trial (a, b) it is
+/// the trial itself if |b| ≤ μa, the apex if a + μc|b| ≤ 0, and otherwise the point of the nearer edge that
 ///
 /// > minimises ½(σ − a)² + ½c(μσ − |b|)²:  σ = (a + μc|b|)/(1 + μ²c),  λ_t = ±μσ.
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! Which bodies touch, and what a contact may transmit.
+//! Detection of contacts, and the laws for the impulses that contacts transmit.
 
 mod approach;
 mod broad_phase;

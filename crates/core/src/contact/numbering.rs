@@ -1,8 +1,8 @@
-//! Who the bodies of contacts are: how they are numbered.
+//! Body indices: grains first, then fixed discs, then features of the boundaries.
 
 use crate::world::World;
 
-/// The other body of a contact, by its index among those of its kind.
+/// The other body of a contact, by its index within its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Other {
     /// A grain.
@@ -21,7 +21,7 @@ impl Other {
     }
 }
 
-/// How all bodies are numbered through: grains, then fixed discs, then features of the boundaries.
+/// The joint numbering of all bodies: grains, then fixed discs, then features of the boundaries.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbering {
     grains: usize,
@@ -29,17 +29,17 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// That of a world.
+    /// The numbering of a world.
     pub fn of(world: &World) -> Self {
         Self { grains: world.grains.len(), fixed_discs: world.fixed_discs.len() }
     }
 
-    /// That of bodies of which nothing is known but that the first are grains.
+    /// A numbering if only the number of grains is known.
     pub(crate) fn of_grains(grains: usize) -> Self {
         Self { grains, fixed_discs: 0 }
     }
 
-    /// The body of a number.
+    /// The body with this number.
     #[inline(always)]
     pub fn other(self, number: u32) -> Other {
         let index = number as usize;

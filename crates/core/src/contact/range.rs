@@ -1,25 +1,25 @@
-//! The law `range`: a bond that lives until it has been stretched by δ_c, whatever the time step.
+//! The law `range`: a bond that exists until it has been stretched by δ_c, whatever the time step.
 //!
-//! **The law.** Two grains that have touched are bonded. A bond pulls with at most C₀, and as long as
-//! it is open it pulls with just that, until it has opened by the debonding distance δ_c: breaking it
-//! takes the work C₀·δ_c. So a pair thrown apart faster than the escape speed √(2C₀δ_c/m_ij) parts, and
-//! a slower one does not; a steady pull below C₀ never parts it.
+//! **The law.** Two grains that have touched are bonded. A bond pulls with at most C₀. While it is open it pulls with
+//! exactly C₀, until it has opened by the debonding distance δ_c: breaking it takes the work C₀·δ_c. So a pair thrown
+//! apart faster than the escape speed √(2C₀δ_c/m_ij) separates, and a slower pair does not. A steady pull below C₀
+//! never separates it.
 //!
-//! **Older laws of finite range.** The wet law of LMGC90, `IQS_WET_DS_CLB` (its manual, *Contact laws*), has Signorini's and
-//! Coulomb's laws on R_n + C₀ for every pair whose gap is at most W_thk as the step begins: a constant pull over a finite range,
-//! and the shifted cone. Its `xQS_WET_DS_CLB` lets what is broken stay so. Both go by the gap, pull through the whole of a step,
-//! and do not bounce; `examples/wet_law.rs` is such a law. Here a pair pulls once it has touched, by what has stretched it
-//! since; breaking it takes the same work at every Δt; and what meets bounces.
+//! **Earlier laws of finite range.** The wet law of LMGC90, `IQS_WET_DS_CLB` (its manual, *Contact laws*), applies
+//! Signorini's and Coulomb's laws to R_n + C₀ for every pair whose gap is at most W_thk as the step begins: a
+//! constant pull over a finite range, and the shifted cone. In `xQS_WET_DS_CLB` broken bonds stay broken. Both laws
+//! depend on the gap, pull during the whole step, and do not bounce; `examples/wet_law.rs` is such a law. Here, a
+//! pair pulls only after it has touched, and the pull depends on its stretch since then; breaking it takes the same
+//! work at every Δt; and collisions bounce.
 //!
-//! **Why a step needs a bound of its own.** A step that is long against the time of a break,
-//! √(2δ_c m_ij/C₀), sees nothing of it but its beginning. If all it knows is N ≥ −C₀, the bond may pull
-//! for all of Δt, stops any opening slower than C₀Δt/m_ij, and takes any work: cohesion grows with Δt.
-//! A bond pulls no longer than it lives, so its impulse is bounded by C₀·min(Δt, τ), with τ the time at
-//! which it has opened by δ_c.
+//! **Why a step needs its own bound.** A step that is long compared with the time of a break, √(2δ_c m_ij/C₀), sees
+//! only the beginning of the break. If its only condition is N ≥ −C₀, the bond may pull for all of Δt. It then stops
+//! any opening slower than C₀Δt/m_ij and takes any work: cohesion grows with Δt. A bond pulls no longer than it
+//! exists, so its impulse is bounded by C₀·min(Δt, τ), with τ the time at which it has opened by δ_c.
 //!
-//! **τ in a step.** Let the bond be stretched by s and open with v at the beginning of the step, once
-//! the shocks of the step have gone through (`sim::steppers::range::bonds`), and let the other forces on the two grains
-//! change that speed by J during the step, evenly. With C = C₀Δt/m_ij the pair opens as
+//! **τ in a step.** Let the bond be stretched by s and open with v at the beginning of the step, after the shocks of
+//! the step (`sim::steppers::range::bonds`), and let the other forces on the two grains change that speed evenly by J
+//! during the step. With C = C₀Δt/m_ij the pair opens as
 //!
 //! > s(t) = s + v t + ½ a t²,  a = (J − C)/Δt,
 //!
@@ -27,50 +27,50 @@
 //!
 //! > τ = 2D / (v + √(v² + 2aD)),
 //!
-//! never where the root is not real or the denominator not positive. A shock (v) and a load (J) are
-//! told apart here: a load below C₀ alone (v = 0, J < C) never breaks the bond, however long the step,
-//! while a shock is stopped only if ½m v² is below the work that is left. For a pair by itself this is
-//! exact: the step ends with the speed that the continuous motion has.
+//! or infinite if the root is not real or the denominator not positive. This distinguishes a shock (v) from a load
+//! (J): a load below C₀ alone (v = 0, J < C) never breaks the bond, however long the step, while a shock is stopped
+//! only if ½m v² is below the remaining work. For an isolated pair this is exact: the step ends with the speed of the
+//! continuous motion.
 //!
-//! Where the step does not break the bond, the stretch grows by Δt·(v + v^n)/2, exact for a constant
-//! force. That is what the bond remembers, and not the gap, which is of the order of Δt² off it: the
-//! work C₀·s is then that of the impulses, and a pair that turns about itself, whose gap opens in every
-//! step by (Δt v_t)²/2d and closes in the next, does not tear its bond.
+//! If the step does not break the bond, the stretch grows by Δt·(v + v^n)/2, which is exact for a constant force. The
+//! bond stores this stretch, not the gap, which differs from it by the order of Δt². So the work C₀·s equals the work
+//! of the impulses. A pair that rotates about itself, whose gap opens by (Δt v_t)²/2d in every step and closes in the
+//! next, does not tear its bond.
 
 use serde::{Deserialize, Serialize};
 
 use super::law;
 
-/// Gaps and overlaps below this many diameters are the rounding and the solver's tolerance. A contact
-/// with less neither has its gap closed nor its overlap pushed out, and it bounces. Without that room
-/// every contact of a bonded network, which has more contacts than its grains have ways to move, would
-/// ask for a gap of zero and could not get it.
+/// Gaps and overlaps below this many diameters count as rounding and solver tolerance: the gap is not closed, the
+/// overlap is not pushed out, and the contact bounces. Without this allowance every contact of a bonded network,
+/// which has more contacts than its grains have degrees of freedom, would demand a gap of exactly zero, which is
+/// impossible.
 pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 
 /// A contact's bond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bond {
-    /// True where the pair has touched since it last parted.
+    /// True if the pair has touched since it last separated.
     pub alive: bool,
-    /// s: how far it has been opened against its pull, m; 0 where the pair touches.
+    /// Stretch s: how far the bond has been opened against its pull, m; 0 if the pair touches.
     pub stretch: f64,
 }
 
 /// The opening of one bond during one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpeningMotion {
-    /// D = δ_c − s, m.
+    /// Remaining opening D = δ_c − s, m.
     pub left: f64,
-    /// v, m/s.
+    /// Opening speed v, m/s.
     pub speed: f64,
-    /// J: what the other forces add to v in the step, m/s.
+    /// Load J: change of v by the other forces during the step, m/s.
     pub load: f64,
 }
 
 impl OpeningMotion {
-    /// C·min(1, τ/Δt), m/s: the largest reduced impulse that the bond can take up in a step of
-    /// `time_step_secs` in which its force alone would change the speed by `capture_speed` (C).
+    /// C·min(1, τ/Δt), m/s: the largest reduced impulse of the bond in a step of `time_step_secs` in which its force
+    /// alone would change the speed by `capture_speed` (C).
     pub(crate) fn bound(&self, capture_speed: f64, time_step_secs: f64) -> f64 {
         let Self { left, speed, load } = *self;
         let acceleration = (load - capture_speed) / time_step_secs;
@@ -86,13 +86,14 @@ impl OpeningMotion {
     }
 }
 
-/// √(2C₀δ_c/m_ij), m/s, where C₀/m_ij is Bond times that acceleration (m/s²): a pair that is thrown apart faster parts.
+/// Escape speed √(2C₀δ_c/m_ij), m/s, with C₀/m_ij = Bond · `acceleration` (m/s²). A pair thrown apart faster
+/// separates.
 pub fn escape_speed(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * law::cohesion_force(bond, 1.0, acceleration) * debonding_distance).sqrt()
 }
 
-/// √(2δ_c m_ij/C₀), s: the time in which the pull of a bond alone would open it, or close it, by δ_c.
-/// Infinite without cohesion.
+/// √(2δ_c m_ij/C₀), s: the time in which the pull of a bond alone would open or close it by δ_c. Infinite without
+/// cohesion.
 pub(crate) fn bond_time_secs(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, acceleration)).sqrt()
 }

@@ -12,10 +12,10 @@ use crate::world::World;
 /// steps in a floor that are meant.
 const APART_IN_DIAMETERS: f64 = 1e-9;
 
-/// Finds the seams of all features; the feature of a number is a part of boundary `boundary_of[number]`.
+/// Finds the seams of all features. Feature `number` is a part of boundary `boundary_of[number]`.
 pub(super) fn find(features: &mut [Feature], boundary_of: &[usize], world: &World) {
     let tolerance = APART_IN_DIAMETERS * world.mean_diameter;
-    // Pieces that go apart have nothing in common.
+    // Pieces with different motions have no seams.
     let mut carried_by = vec![None; world.boundaries.len()];
     for (number, motion) in world.motions.iter().enumerate() {
         if motion.course.is_some() || motion.drive.is_some() {

@@ -30,7 +30,7 @@ pub(super) struct Seam {
     pub other: Piece,
     /// The number of that corner among those of the other piece, if it is a corner there.
     pub other_corner: Option<usize>,
-    /// True where the other piece comes later.
+    /// True if the other piece comes later.
     pub is_earlier: bool,
 }
 
@@ -43,12 +43,12 @@ pub(super) enum Piece {
 }
 
 impl Seams {
-    /// True where nothing adjoins.
+    /// True if no corner lies on another piece.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// True where a disc with that centre, to which a corner of this feature is nearest, touches the corner and this
+    /// True if a disc with this centre, to which a corner of this feature is nearest, touches the corner and this
     /// feature reports it.
     pub(super) fn reports(&self, corner: usize, centre: DVec2) -> bool {
         self.0.iter().filter(|seam| seam.corner == corner).all(|seam| {
@@ -61,7 +61,7 @@ impl Seams {
         })
     }
 
-    /// Follows the boundaries, which go together.
+    /// Moves with the boundaries, which move together.
     pub(super) fn carry(&mut self, carry: &Carry) {
         for Seam { other, .. } in &mut self.0 {
             let segments = match other {

@@ -1,38 +1,39 @@
-//! What pairs transmit in a step that is taken in pieces, each of which finds its contacts anew and turns their normals.
+//! Impulses transmitted by pairs in a step that is taken in pieces. Each piece finds its contacts again and turns
+//! their normals.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::contact::{Contact, Impulse};
 
-/// What a pair has transmitted since the step began.
+/// Impulses transmitted by a pair since the step began.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Transmitted {
-    /// As it was first found in the step.
+    /// The contact as it was first found in the step.
     pub contact: Contact,
     /// The step in which it was found to touch.
     pub found_in: u64,
-    /// Sums along normals and tangents as they were, N·s.
+    /// Sums along the normals and tangents of the time, N·s.
     pub sums: Impulse,
-    /// The same as a vector on grain i, N·s.
+    /// Sum as a vector on grain i, N·s.
     pub vector: DVec2,
 }
 
 impl Transmitted {
-    /// What a contact transmits along a normal.
+    /// The impulse of one contact along `normal`.
     pub(crate) fn of(contact: Contact, found_in: u64, normal: DVec2, impulse: Impulse) -> Self {
         let vector = impulse.normal * normal + impulse.tangential * normal.perp();
         Self { contact, found_in, sums: impulse, vector }
     }
 }
 
-/// Those of a step, sorted as contacts are.
+/// Transmitted impulses of a step, sorted like contacts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StepSums {
     pub(super) pairs: Vec<Transmitted>,
-    /// Where the next pair is looked for first: but for shocks they come in the order of the list.
+    /// Index at which the next pair is looked for first, because pairs come in list order except in shocks.
     #[serde(skip)]
     next: usize,
 }
@@ -43,7 +44,7 @@ impl StepSums {
         self.next = 0;
     }
 
-    /// What a pair has transmitted.
+    /// Total impulse transmitted by a pair.
     pub(super) fn of(&self, pair: (u32, u32)) -> Impulse {
         self.place_of(pair).map_or_else(|_| Impulse::default(), |place| self.pairs[place].sums)
     }
@@ -52,7 +53,7 @@ impl StepSums {
         self.pairs.binary_search_by_key(&pair, |there| there.contact.pair())
     }
 
-    /// Adds to what a pair has transmitted.
+    /// Adds to the total of a pair.
     pub(crate) fn add(&mut self, added: Transmitted) {
         let pair = added.contact.pair();
         let at_next = self.pairs.get(self.next).map(|there| there.contact.pair());

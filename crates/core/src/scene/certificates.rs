@@ -1,6 +1,6 @@
-//! What a solve ends by is no less than the distance from the solution: over scenes, steppers, friction, restitution and
-//! time steps it is what the rows' data make it, summed here a second time, or more where contacts lack something
-//! (`solver::problem::velocity_error`).
+//! Test that the error bound a solve reports is not less than the distance from the solution. Over scenes, steppers,
+//! friction, restitution and time steps, the bound must equal the one summed here a second time from the rows' data,
+//! or exceed it if contacts violate their constraint (`solver::problem::velocity_error`).
 
 use crate::contact::ContactList;
 use crate::number::Parts;
@@ -11,20 +11,20 @@ use crate::solver::{
     velocity_distance, velocity_error,
 };
 
-/// Larger scenes say no more, and take longer.
+/// Larger scenes take longer and show nothing new.
 const MOST_GRAINS: usize = 250;
 
-/// After which walls that a force drives have reached the grains.
+/// Steps after which walls driven by a force have reached the grains.
 const STEPS_TO_TOUCH: u64 = 120;
 
-/// Within bounds of friction.
+/// Settings for bounded friction.
 const BOUNDED: SolverSettings = SolverSettings::BOUNDED;
 
-/// A problem that is solved within bounds of friction.
+/// Visitor that solves a problem with bounded friction.
 struct Certified(SolverSettings);
 
-/// Of one, m/s: the bound that is told, the same from the rows' data, and, where it is certified, the distance from the
-/// solution.
+/// Result of one solve, m/s: the reported bound, the bound computed from the rows' data, and the distance from the
+/// solution if the solve is certified.
 struct Certificate {
     told: f64,
     found: f64,
@@ -36,7 +36,7 @@ impl ProblemVisitor for Certified {
 
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Certificate {
         let report = solve(problem, &mut Memory::default(), &self.0);
-        // As near to the solution as rounding allows; how near is taken off the distance.
+        // As near to the solution as rounding allows. Its own error is subtracted from the distance.
         let exact = [1e-9, 1e-7, 1e-6].into_iter().find_map(|tolerance| {
             let mut exact = problem.clone();
             let tight = SolverSettings { tolerance, ..SolverSettings::default() };
@@ -52,7 +52,7 @@ impl ProblemVisitor for Certified {
     }
 }
 
-/// Σ m_ij (σ(w + 2z) + z² + g|v| + λv), J, and the mass of what touches, kg.
+/// Σ m_ij (σ(w + 2z) + z² + g|v| + λv), J, and the mass of all grains in contact, kg.
 fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     let spins = f64::from(u8::from(M::ROTATION));
     let coordinates = |grain: u32| M::coordinates(&problem.bodies.now[grain as usize]);
@@ -81,7 +81,7 @@ fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     (gap, masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum())
 }
 
-/// All that a scene is run with.
+/// All settings with which each scene is run.
 fn variants(settings: Settings) -> impl Iterator<Item = Settings> {
     let steppers = [Stepper::Moreau, Stepper::Range];
     let numbers = [(0.0, 1.0), (0.2, 1.0), (0.9, 1.0), (0.5, 8.0)];
@@ -109,7 +109,7 @@ fn no_certificate_is_wrong() {
         for settings in variants(scene.settings()) {
             let mut scene = scene.clone();
             scene.set_settings(settings);
-            // Some steppers do not take the scene.
+            // Some steppers refuse the scene.
             let Ok(mut run): Result<Simulation, _> = scene.simulation() else { continue };
             let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
             if is_driven && run.take_steps(STEPS_TO_TOUCH).is_err() {
@@ -146,7 +146,8 @@ fn no_certificate_is_wrong() {
     assert!(nearest > 0.5, "{nearest}: bounds that are twice too small would not be seen");
 }
 
-/// Discs that walls press from all sides, solved to so much of √(g d): the residual of what comes of it.
+/// Visitor that solves discs pressed by walls from all sides to a tolerance in units of √(g d), and returns the
+/// residual.
 struct Pressed(f64);
 
 impl ProblemVisitor for Pressed {

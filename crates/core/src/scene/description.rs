@@ -1,4 +1,4 @@
-//! Everything that a scene says.
+//! The contents of a scene.
 
 use std::fmt::Arguments;
 use std::path::PathBuf;
@@ -17,19 +17,19 @@ use crate::world::{
     TurningGravity, World,
 };
 
-/// A scene, built-in or from a TOML file, which says the same things by the same names.
-/// Plain data, checked where a simulation is made of it ([`Scene::validate`]).
+/// A scene, built-in or from a TOML file with the same field names. Plain data, checked when a simulation is made
+/// from it ([`Scene::validate`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// Its name.
+    /// Name of the scene.
     pub name: String,
-    /// The diameter d that lengths are measured in, m.
+    /// The diameter d, the unit of length for relative quantities, m.
     pub mean_diameter: f64,
-    /// σ of the discs, kg/m².
+    /// Areal density σ of the discs, kg/m².
     #[serde(default = "one")]
     pub areal_density: f64,
-    /// Pairs touch below this gap, m: 0 but for rounding.
+    /// Pairs touch below this gap, m: 0 except for rounding.
     #[serde(default)]
     pub gap_tolerance: f64,
     /// Simulated time of a run, s.
@@ -38,30 +38,30 @@ pub struct Scene {
     pub physics: Physics,
     /// The field that accelerates the grains.
     pub gravity: Gravity,
-    /// How it turns, if it does.
+    /// Rotation of gravity, if it turns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_turn: Option<GravityTurn>,
-    /// Left and right borders that are one line, if there are any.
+    /// Periodic borders, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// The way to step, with its contact law.
+    /// The stepper, with its contact law.
     #[serde(default)]
     pub stepper: Stepper,
-    /// Numbers that may change during a run.
+    /// Parameters that may change during a run.
     pub parameters: Parameters,
-    /// How well each step is solved.
+    /// Solver settings of each step.
     #[serde(default)]
     pub solver: SolverSettings,
     /// Remedies for known failures.
     #[serde(default, skip_serializing_if = "Remedies::is_none")]
     pub remedies: Remedies,
-    /// What its pictures show; chosen from the grains' start where it is left out.
+    /// View of the pictures. Default: chosen from the grains' start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<View>,
-    /// Where the grains come from, unless they are listed.
+    /// Source of the grains, unless they are listed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<GrainSource>,
-    /// What is recorded of its runs.
+    /// Settings for recordings of its runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub data: Option<DataSettings>,
     /// Fixed shapes.
@@ -70,7 +70,7 @@ pub struct Scene {
     /// Fixed discs.
     #[serde(default)]
     pub fixed_discs: Vec<Disc>,
-    /// How some of these shapes and discs move by themselves.
+    /// Motions of some of these shapes and discs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub motions: Vec<Motion>,
     /// The moving discs.
@@ -88,11 +88,11 @@ pub struct View {
     pub max: DVec2,
 }
 
-/// Where the grains of a scene come from.
+/// Source of a scene's grains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "from", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GrainSource {
-    /// A CSV of discs.
+    /// A CSV file of discs.
     Csv {
         /// Its path; in a scene file, relative to that file.
         path: std::path::PathBuf,
@@ -101,7 +101,7 @@ pub enum GrainSource {
     Data {
         /// Its path; in a scene file, relative to that file.
         path: std::path::PathBuf,
-        /// The step whose grains are taken; the last where none is given.
+        /// The step whose grains are taken. Default: the last.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         step: Option<u64>,
     },
@@ -114,15 +114,16 @@ fn one() -> f64 {
     1.0
 }
 
-/// Farther than this many of its radii from the origin a disc's place is rounded by more than a
-/// ten-thousandth of one, and soon to where others are as well.
+/// Largest distance of a disc from the origin, in its radii. Farther away, its place is rounded by more than a
+/// ten-thousandth of its radius, and soon to the place of other discs.
 const FARTHEST_IN_RADII: f64 = 1e15;
 
-/// Most mean diameters of a scene that the mean of its grains measures. More are a mistake of units: grains in millimetres.
-/// Less: a scene cannot take one of several sizes for its unit of length.
+/// Upper limit for the mean diameter of the grains, in mean diameters of the scene. Larger values come from an error
+/// of units, such as grains in millimetres. If the limit were smaller, a scene with grains of several sizes could not
+/// choose one of the sizes as its unit of length.
 const MOST_DIAMETERS_OF_MEAN: f64 = 100.0;
 
-/// Names are put together where there is something to tell: a study asks this of every disc of every run.
+/// The name of the field is formatted only for an error, because a study checks each disc of each run.
 fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
     if value > 0.0 && value.is_finite() {
         Ok(())
@@ -141,7 +142,7 @@ fn within_reach(field: Arguments<'_>, place: DVec2, radius: f64) -> Result<()> {
 }
 
 impl Scene {
-    /// Grains by themselves, with all physics, under the paper's law: what else a scene has is changed in it.
+    /// A scene of grains only, with all physics, under the paper's law. Callers change the rest.
     pub(super) fn of(
         name: &str,
         mean_diameter: f64,
@@ -173,20 +174,20 @@ impl Scene {
         }
     }
 
-    /// How it is stepped.
+    /// Its stepper, parameters, solver and remedies.
     pub fn settings(&self) -> Settings {
         let Self { stepper, parameters, solver, remedies, .. } = *self;
         Settings { stepper, parameters, solver, remedies }
     }
 
-    /// Has it stepped otherwise.
+    /// Replaces its stepper, parameters, solver and remedies.
     pub fn set_settings(&mut self, settings: Settings) {
         let Settings { stepper, parameters, solver, remedies } = settings;
         (self.stepper, self.parameters, self.solver, self.remedies) =
             (stepper, parameters, solver, remedies);
     }
 
-    /// Checks all that the scene says, but for the shapes of its boundaries.
+    /// Checks everything except the shapes of the boundaries.
     ///
     /// # Errors
     /// Names the first field outside its range.
@@ -220,7 +221,7 @@ impl Scene {
         }
         let mean = 2.0 * self.grains.iter().map(|grain| grain.radius).sum::<f64>()
             / self.grains.len() as f64;
-        // `reach_in` has the other end: the largest grain.
+        // `reach_in` checks the other limit: the largest grain.
         let least = mean / MOST_DIAMETERS_OF_MEAN;
         if self.mean_diameter < least {
             let allowed =
@@ -268,7 +269,7 @@ impl Scene {
         self.settings().check_in(&world, self.physics)
     }
 
-    /// All that moves and all that it meets, as it begins.
+    /// The initial world.
     fn world(&self) -> World {
         World {
             fixed_discs: self.fixed_discs.clone(),
@@ -303,8 +304,7 @@ impl Scene {
         Ok(())
     }
 
-    /// What pictures of this scene show: its own view, or the grains' start with room to spread by
-    /// the grains' height on either side.
+    /// The view of its pictures: its own, or the grains' start with a margin of the grains' height on either side.
     pub fn view(&self) -> View {
         if let Some(view) = self.view {
             return view;
@@ -324,7 +324,7 @@ impl Scene {
         self.with_fixed_discs_beside(View { min: min - room, max: max + room })
     }
 
-    /// A view of the grains and, of what never moves, the part beside them.
+    /// A view that also includes the fixed discs below or above the grains' range of x.
     fn with_fixed_discs_beside(&self, View { mut min, mut max }: View) -> View {
         for disc in &self.fixed_discs {
             if (min.x..max.x).contains(&disc.position.x) {
@@ -335,14 +335,14 @@ impl Scene {
         View { min, max }
     }
 
-    /// The same with these grains, told apart by the layers that they lie in.
+    /// The same scene with these grains, in greys by layer.
     pub fn with_settled(mut self, grains: Vec<Grain>) -> Self {
         self.grains = grains;
         tone_in_layers(&mut self.grains, self.mean_diameter);
         self
     }
 
-    /// Sets the scene up at t = 0.
+    /// Creates a simulation at t = 0.
     ///
     /// # Errors
     /// Names the first field outside its range.
@@ -353,36 +353,37 @@ impl Scene {
 }
 
 words! {
-    /// Files that a recording is written as.
+    /// File formats of recordings.
     pub enum FormatName {
         Parquet = "parquet", "Parquet, for pandas, polars and their like";
         Csv = "csv", "Text with commas";
         Vtk = "vtk", "Files of VTK, for ParaView";
         Ovito = "ovito", "Dumps as LAMMPS writes them, for OVITO";
-        Fields = "fields", "Density, velocity and stress on a grid, smoothed over a mean diameter, as images for ParaView";
+        Fields = "fields", "Density, velocity and stress on a grid, smoothed over a mean diameter, as images for \
+            ParaView";
     }
 }
 
-/// What scene files and studies say of a recording.
+/// Settings of a recording in scene files and studies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DataSettings {
-    /// Where it goes; in a scene file, relative to that file.
+    /// Folder of the recording; in a scene file, relative to that file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<PathBuf>,
     /// Simulated time between two frames, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub every_secs: Option<f64>,
-    /// The files that are written; the reader's default where nothing is said.
+    /// File formats. If empty, the reader's default.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub formats: Vec<FormatName>,
 }
 
 impl DataSettings {
-    /// Checks the time between frames, under the name that it is said by.
+    /// Checks the time between frames; `field` is its name in messages.
     ///
     /// # Errors
-    /// Where it is outside its range.
+    /// If it is outside its range.
     pub fn validate(&self, field: &str) -> Result<()> {
         match self.every_secs {
             Some(secs) if !(secs > 0.0 && secs.is_finite()) => {

@@ -1,6 +1,7 @@
-//! The error of the velocities that a step reports is near their distance to Coulomb's law, whatever solved the step:
-//! over scenes, steppers, friction, restitution, time steps, sizes and methods. The distance is that to the nearest of
-//! the solutions that several starts lead to; with few starts the nearest one may be missed.
+//! Test that the reported velocity error of a step is near its distance to Coulomb's law, whatever solved the step:
+//! over scenes, steppers, friction, restitution, time steps, sizes and solvers. The distance is measured to the
+//! nearest of the solutions reached from several starting points. With few starting points the nearest solution may
+//! be missed.
 
 use crate::contact::ContactList;
 use crate::scene::{Deposition, NewPile, SCENES, Scene, built_in, pile_of, settle, stability};
@@ -11,10 +12,10 @@ use crate::solver::{
 };
 use crate::world::Grain;
 
-/// Smaller distances, in √(g d), are not judged: the error that is reported there is known to be too large.
+/// Smaller distances, in √(g d), are not judged: the reported error is known to be too large there.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 
-/// One solve: what was told, and how far it was off, in what such errors are held against.
+/// One solve: the reported error, and the actual distance in the same norm.
 #[derive(Clone, Debug)]
 struct Judged {
     what: String,
@@ -22,18 +23,18 @@ struct Judged {
     off: f64,
 }
 
-/// Solves a problem in several ways and judges each.
+/// Visitor that solves a problem in several ways and judges each solve.
 struct Judge<'a> {
     what: &'a str,
     how: Search,
 }
 
-/// How reference solutions are looked for.
+/// Search for reference solutions.
 #[derive(Clone, Copy)]
 struct Search {
     starts: u32,
     max_sweeps: u32,
-    /// Of a solution that counts as one.
+    /// Largest residual of a reference solution.
     largest_residual: f64,
 }
 
@@ -43,7 +44,7 @@ impl Search {
     }
 }
 
-/// Ways to solve a step, well and badly.
+/// Solver settings for good and bad solves.
 fn ways() -> Vec<(&'static str, SolverSettings)> {
     let sweeps = |method, max_sweeps| SolverSettings::to_residual(method, 1e-13, max_sweeps);
     vec![
@@ -79,7 +80,7 @@ impl ProblemVisitor for Judge<'_> {
             let apart = |solution: &Solution<M>| velocity_distance(&tried, &solution.problem);
             let mut off = solutions.iter().map(apart).fold(f64::INFINITY, f64::min);
             if off > told {
-                // Of several solutions, the nearest may be one that none of the starts led to.
+                // The nearest solution may be one that none of the starting points led to.
                 let from_here = search.from(&tried, 0);
                 if from_here.residual <= largest_residual {
                     off = off.min(apart(&from_here));
@@ -91,10 +92,10 @@ impl ProblemVisitor for Judge<'_> {
     }
 }
 
-/// Judges some steps of a scene.
+/// Judges the given steps of a scene.
 fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     let mut judged = Vec::new();
-    // Some steppers do not take the scene.
+    // Some steppers refuse the scene.
     let Ok(mut run) = scene.simulation() else { return judged };
     for &step in steps {
         while run.observables().step < step {
@@ -108,8 +109,8 @@ fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     judged
 }
 
-/// What is said of solves that are off by more than rounding: the share that is told too little, and the median of what is told
-/// over the distance.
+/// Prints a summary of solves whose distance exceeds rounding. Returns the fraction whose reported error is too
+/// small, and the median ratio of reported error to distance.
 fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     let off = judged.iter().filter(|it| it.off > SMALLEST_DISTANCE);
     let mut ratios: Vec<(f64, &Judged)> = off.map(|it| (it.told / it.off, it)).collect();
@@ -125,7 +126,8 @@ fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     let [least, most] =
         [distances.clone().fold(f64::INFINITY, f64::min), distances.fold(0.0, f64::max)];
     println!(
-        "{name}: {} solves, off by {least:.0e} to {most:.0e}, {share:.3} told too little; told over distance {:.2}, {:.2}, {:.1}, {:.1}, {:.0} (0, 5, 50, 95, 100 %)",
+        "{name}: {} solves, off by {least:.0e} to {most:.0e}, {share:.3} told too little; told over distance {:.2}, \
+            {:.2}, {:.1}, {:.1}, {:.0} (0, 5, 50, 95, 100 %)",
         ratios.len(),
         at(0.0),
         at(0.05),
@@ -139,7 +141,7 @@ fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     [share, at(0.5)]
 }
 
-/// Scenes with the friction, restitution and time steps that they are tried with.
+/// Scenes with the values of friction, restitution and time step to test.
 fn small_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for info in SCENES {
@@ -169,7 +171,7 @@ fn small_scenes() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// Scenes in which one contact carries much.
+/// Scenes in which one contact carries a large load.
 fn hard_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for (radius, friction) in [(1e-3, 0.0), (1.6e-5, 0.0), (1e-3, 0.5)] {
@@ -194,7 +196,7 @@ fn hard_scenes() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// A collapsing or standing pile.
+/// A pile that collapses or stays at rest.
 fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     let width = 16.0 * (grains as f64 / 138.0).sqrt();
     let deposition = Deposition::DropAndRoll;
@@ -205,7 +207,7 @@ fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     scene
 }
 
-/// Says how good what is told is, in all and by each way to solve.
+/// Checks the reported errors, overall and for each way of solving.
 #[track_caller]
 fn check(name: &str, judged: &[Judged], largest_median: f64) {
     let [share, median] = tell(name, judged);
@@ -245,6 +247,6 @@ fn so_it_is_of_large_piles() {
             all.extend(judged);
         }
     }
-    // Small errors of piles at rest are told too large.
+    // For piles at rest, small errors are reported too large.
     check("large piles", &all, f64::INFINITY);
 }

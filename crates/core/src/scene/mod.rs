@@ -1,5 +1,4 @@
-//! Scenes: what is simulated, with which physics, numbers and solver. The built-in ones are
-//! listed in [`SCENES`].
+//! Scenes: bodies, physics, parameters and solver of a simulation. [`SCENES`] lists the built-in ones.
 
 #[cfg(test)]
 mod certificates;

@@ -1,4 +1,4 @@
-//! A new pile: the numbers that say which one.
+//! Parameters of a new pile.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,16 +9,17 @@ use crate::setting::words;
 pub(super) const SPACING: f64 = 1.3;
 
 words! {
-    /// How the grains of a new pile are put in place.
+    /// Method of placing the grains of a new pile.
     #[derive(Default)]
     pub enum Deposition {
         #[default]
         Rain = "rain", "All grains fall together through a medium, as in the shipped pile; minutes for 2,000 grains";
-        DropAndRoll = "drop-and-roll", "Grains are placed one by one and roll until two others hold them: a denser pile with more contacts; seconds for 10,000 grains";
+        DropAndRoll = "drop-and-roll", "Grains are placed one by one and roll until two others hold them: a denser \
+            pile with more contacts; seconds for 10,000 grains";
     }
 }
 
-/// A new pile.
+/// Parameters of a new pile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct NewPile {
@@ -26,29 +27,29 @@ pub struct NewPile {
     pub grains: usize,
     /// Width of the box, in diameters.
     pub box_width_in_diameters: f64,
-    /// Seed of diameters and places.
+    /// Seed of the random diameters and places.
     pub seed: u64,
-    /// How they are put in place.
+    /// Method of placing the grains.
     #[serde(skip_serializing_if = "is_rain")]
     pub deposition: Deposition,
 }
 
-/// Files that say nothing of it are as old as rain.
+/// Rain is not written: files without the field predate other methods.
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
 fn is_rain(deposition: &Deposition) -> bool {
     *deposition == Deposition::Rain
 }
 
 impl Default for NewPile {
-    /// The paper's 138 grains. The seed is one of nine tried: with it, single runs of Fig. 4 show
-    /// what means over many initial states show.
+    /// The paper's 138 grains. The seed is one of nine tried; with it, single runs of Fig. 4 show the effects of the
+    /// means over many initial states.
     fn default() -> Self {
         Self { grains: 138, box_width_in_diameters: 16.0, seed: 8, deposition: Deposition::Rain }
     }
 }
 
 impl NewPile {
-    /// Checks the numbers against their ranges.
+    /// Checks the parameters against their ranges.
     ///
     /// # Errors
     /// Names the field, its value and its range.

@@ -10,26 +10,26 @@ use crate::scene::{NewPile, Scene, View};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 
-/// d, m.
+/// Diameter d, m.
 pub(super) const DIAMETER: f64 = 5e-3;
-/// g, m/s².
+/// Gravity g, m/s².
 pub(super) const GRAVITY: f64 = 9.8;
 const NAME: &str = "pile";
-/// How wide a base may be asked for.
+/// Allowed widths of a base.
 const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
-/// How far the rough base reaches beyond the box on either side, in heights of the pile: further
-/// than any grain of a collapsing pile gets in the paper's second.
+/// Margin of the rough base beyond the box on either side, in heights of the pile: further than any grain of a
+/// collapsing pile moves in the paper's second.
 const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
-/// Grains of a pile may be this high above the base, and two diameters more for each of them: the
-/// loosest lattice that rain starts from is a column with 1.3 for each.
+/// Largest height of a grain above the base, to which two diameters are added per grain. The loosest lattice of rain
+/// is a column with 1.3 diameters per grain.
 const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 
 const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 
-/// The paper's 138 grains, from the initial state that is shipped with the program.
+/// The paper's pile of 138 grains, from the initial state shipped with the program.
 ///
 /// # Errors
-/// None in a program as shipped; a changed asset is told of with its line.
+/// Never in a released program. A modified asset is reported with its line.
 pub fn paper_pile() -> Result<Scene> {
     let lines = INITIAL_STATE.lines().filter(|line| !line.starts_with('#')).skip(1);
     let disc = |line: &str| {
@@ -43,11 +43,10 @@ pub fn paper_pile() -> Result<Scene> {
     pile_of(grains, NewPile::default().box_width_in_diameters)
 }
 
-/// A pile of the given grains, for a box that was `box_width_in_diameters` wide.
+/// A pile of the given grains, which were settled in a box `box_width_in_diameters` wide.
 ///
 /// # Errors
-/// Where a grain is so high up that the base, which is as wide as a collapse may reach, would have
-/// far more discs than the pile.
+/// If a grain is so high that the base, as wide as a collapse may reach, would have far more discs than the pile.
 pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Scene> {
     let highest = DIAMETER * (LEAST_ROOM_IN_DIAMETERS + 2.0 * grains.len() as f64);
     if let Some(index) = grains.iter().position(|grain| grain.position.y > highest) {
@@ -75,10 +74,10 @@ pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
         .collect()
 }
 
-/// Gives a pile a rough base of that width.
+/// Gives a pile a rough base of this width.
 ///
 /// # Errors
-/// Where the width is outside its range, or the scene is no pile.
+/// If the width is outside its range, or the scene is not a pile.
 pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
     error::check(scene.name == NAME, "scene", &scene.name, "pile where base-width is given")?;
     if !BASE_WIDTHS_IN_DIAMETERS.contains(&width_in_diameters) {
@@ -90,20 +89,20 @@ pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
     Ok(())
 }
 
-/// d of the collision and of the cradle, m.
+/// Diameter d of the collision and of the cradle, m.
 const LINE_DIAMETER: f64 = 0.3;
 const ON_LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 
-/// What pictures of both show, in diameters.
+/// The view of both scenes, from corners in diameters.
 fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: LINE_DIAMETER * min, max: LINE_DIAMETER * max })
 }
 
 /// Two bodies, one contact (paper §2.2): a disc dropped on another, fixed one.
 ///
-/// With A = the normal force that would give v̄ = 0, the three cases of the contact graph are: A > 0
-/// bounces, −C₀ < A < 0 closes again, A < −C₀ opens. The built-in scene starts in the first and runs
-/// through the others as the bounces die out.
+/// With A the normal force that would give v̄ = 0, the contact graph has three cases: for A > 0 the disc bounces, for
+/// −C₀ < A < 0 the contact closes again, for A < −C₀ it opens. The built-in scene starts in the first case and passes
+/// through the others as the bounces decay.
 pub fn collision() -> Scene {
     let radius = 0.5 * LINE_DIAMETER;
     let gravity = Gravity::Uniform { acceleration: DVec2::new(-2.0, 0.0) };
@@ -119,15 +118,15 @@ pub fn collision() -> Scene {
     }
 }
 
-/// The start of k, in diameters left of i, with which the paper's pattern of open and closed bonds
-/// comes out. The paper does not state its own; this one was searched for.
+/// Initial position of k, in diameters left of i, that gives the paper's pattern of open and closed bonds. The paper
+/// does not state its value; this one was found by a search.
 const START_IN_DIAMETERS: f64 = 7.865;
 
 /// Three discs on a line, drawn towards one of them (paper §4).
 ///
-/// i sits at the centre of attraction, j touches it on the right, k starts at rest on the left and
-/// falls in. Whether the shock parts i and j depends on the time step, and, at small steps, on how
-/// far the solver is from the solution when it stops: an exactly solved step leaves v_ij = 0.
+/// i sits at the centre of attraction, j touches it on the right, and k starts at rest on the left and falls in. The
+/// time step decides whether the shock separates i and j. At small steps the solver's remaining error also matters:
+/// an exactly solved step leaves v_ij = 0.
 pub fn cradle() -> Scene {
     cradle_from(START_IN_DIAMETERS)
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::setting::words;
 
 words! {
-    /// What a scene is there for, with its heading in lists.
+    /// Purpose of a scene, with its heading in lists.
     pub enum SceneGroup {
         Paper = "paper", "Scenes";
         Experiments = "experiments", "Experiments";
@@ -16,27 +16,27 @@ words! {
 /// A built-in scene.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInfo {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What else it is called: challenges that have no scene of their own, but are of this one.
+    /// Other names: challenges that use this scene.
     pub also: &'static [&'static str],
-    /// What it is there for.
+    /// Purpose of the scene.
     pub group: SceneGroup,
-    /// One line.
+    /// Summary of one line.
     pub summary: &'static str,
-    /// Makes it.
+    /// Creates the scene.
     pub make: fn() -> Result<Scene>,
 }
 
 impl SceneInfo {
-    /// The built-in scene of a name, in upper or lower case.
+    /// The built-in scene with this name, in upper or lower case.
     pub fn named(name: &str) -> Option<&'static Self> {
         let is_it = |known: &&str| known.eq_ignore_ascii_case(name);
         SCENES.iter().find(|scene| is_it(&scene.name) || scene.also.iter().any(is_it))
     }
 }
 
-/// Declares the built-in scenes, group by group: names, one line, and what makes it.
+/// Declares the built-in scenes by group: names, summary and constructor.
 macro_rules! scenes {
     ($($Group:ident { $($name:literal $(| $also:literal)*, $summary:literal => $make:expr;)* })*) => {
         /// All built-in scenes.
@@ -124,7 +124,7 @@ pub(crate) fn scene_names() -> String {
 /// ```
 ///
 /// # Errors
-/// Where there is none of that name.
+/// If no built-in scene has that name.
 pub fn built_in(name: &str) -> Result<Scene> {
     let info = SceneInfo::named(name).ok_or_else(|| {
         Error::value("scene", name, format!("one of {} or a file.toml", scene_names()))

@@ -2,11 +2,11 @@
 
 use crate::world::Grain;
 
-/// Height of the layers that are told apart by their grey, in diameters.
+/// Height of the layers with different greys, in diameters.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
 const LAYER_TONES: [u8; 2] = [222, 168];
 
-/// Gives grains greys by the layer they start in, so that a picture shows what moved where.
+/// Colours grains by their initial layer, so that a picture shows where each part moved.
 pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
     for grain in grains {
         let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;

@@ -1,4 +1,4 @@
-//! The one change that is most likely to help against an alarm, under the settings that raised it.
+//! The change most likely to help against an alarm, under the settings that raised it.
 
 use crate::setting::words;
 use crate::sim::settings::{Settings, SpringDashpot, Stepper, stable_substeps};
@@ -6,12 +6,12 @@ use crate::sim::state::State;
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic, Physics, World};
 
-/// Tolerance, in any measure, that no step of a pile is solved to. Where a larger one would do, that is what an unsolved step is
-/// told.
+/// Tolerance, in any measure, that no step of a pile reaches. With a tolerance below it, the advice on an unsolved
+/// step is a larger tolerance.
 const BELOW_ROUNDING: f64 = 1e-15;
 
 words! {
-    /// The change that is most likely to help against an alarm.
+    /// The change most likely to help against an alarm.
     pub enum Advice {
         TimeStep = "time-step", "try a smaller time step";
         Stiffness = "stiffness", "try a larger stiffness";
@@ -40,7 +40,7 @@ words! {
     }
 }
 
-/// On grains that were placed in overlap: only `moreau` takes the remedy that moves them apart.
+/// Advice on grains placed with overlap. Only `moreau` supports the remedy that moves them apart.
 pub(super) fn on_placed(settings: &Settings) -> Advice {
     match settings.stepper {
         Stepper::Moreau => Advice::PushOut,
@@ -48,7 +48,7 @@ pub(super) fn on_placed(settings: &Settings) -> Advice {
     }
 }
 
-/// On a cohesion force that is 0 although Bond is not.
+/// Advice on a cohesion force that is 0 although Bond is not.
 pub(super) fn on_no_cohesion(
     settings: &Settings,
     world: &World,
@@ -63,7 +63,7 @@ pub(super) fn on_no_cohesion(
     }
 }
 
-/// On bonds that ended because their pairs turned: `range` has no compressive cone.
+/// Advice on bonds that ended because their pairs turned. `range` has no compressive cone.
 pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     match settings.parameters.cone {
         FrictionCone::Compressive => Advice::BondsOfDem,
@@ -71,7 +71,7 @@ pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     }
 }
 
-/// On a state that is no longer finite.
+/// Advice on a state that is no longer finite.
 pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     match has_too_few_substeps(state, settings) {
         true => Advice::StableSubsteps,
@@ -79,8 +79,8 @@ pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     }
 }
 
-/// On bodies that came too deep into each other, with the stiffness (N/m) of the springs that gave way. Springs give
-/// way at every time step; under all other laws a contact is seen too late.
+/// Advice on bodies that overlap too deeply, with the stiffness (N/m) of the springs that yielded. Springs yield at
+/// any time step; under all other laws the contact is detected too late.
 pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f64>) {
     if settings.stepper != Stepper::Dem {
         return (Advice::TimeStep, None);
@@ -93,14 +93,14 @@ pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f6
     (Advice::Stiffness, Some(stiffness))
 }
 
-/// True for springs that are stepped in fewer substeps than are stable.
+/// True for springs with fewer substeps than are stable.
 fn has_too_few_substeps(state: &State, settings: &Settings) -> bool {
     let (parameters, asked) = (&settings.parameters, settings.parameters.substeps);
     let stable = stable_substeps(&state.world, state.physics, parameters);
     settings.stepper == Stepper::Dem && asked > 0 && f64::from(asked) < stable
 }
 
-/// On contacts that created energy in a step that was solved. Under `moreau` and `range` that takes friction, too.
+/// Advice on contacts that created energy in a solved step. Under `moreau` and `range` this also needs friction.
 pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     match settings.parameters.restitution > 0.0 {
         true => Advice::NoRestitution,
@@ -108,7 +108,7 @@ pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     }
 }
 
-/// On steps that were not solved, the last of which had stalled or not.
+/// Advice on unsolved steps. `stalled` tells if the last of them had stalled.
 pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> Advice {
     let Settings { stepper, parameters, solver, .. } = settings;
     if !stalled && solver.max_sweeps < SolverSettings::DEFAULT.max_sweeps {
@@ -121,7 +121,7 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
     if stalled && may_bounce && stepper.reads("restitution-threshold") {
         return Advice::RestitutionThreshold;
     }
-    // Under other models Newton's method would be another law.
+    // Under the other friction models, Newton's method would solve a different law.
     if solver.friction_model == FrictionModel::Coulomb {
         let newton = Method::Newton.info();
         let is_driven = state.world.motions.iter().any(|motion| motion.drive.is_some());
@@ -130,7 +130,7 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
         if is_taken && solver.method != Method::Newton {
             return Advice::Newton;
         }
-        // With walls that a force drives `auto` gives up before the limit, so more sweeps would not help.
+        // With walls driven by a force `auto` stops before the limit, so more sweeps would not help.
         let gives_up = solver.method == Method::Auto;
         if (stalled || gives_up) && state.physics.friction && parameters.friction > 0.0 {
             return Advice::BoundedFriction;

@@ -1,5 +1,5 @@
-//! What a run says when it goes wrong: in which way, since when, and the one change that is most
-//! likely to help. [`Watch`] raises alarms, and `advice` chooses the changes.
+//! Alarms of a run: the kind of failure, its first step, and the change most likely to help. [`Watch`] raises alarms,
+//! and `advice` chooses the changes.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,23 +12,23 @@ use crate::sim::losses::{Losses, NewLosses};
 use crate::sim::state::State;
 use crate::sim::{Observables, Settings};
 
-/// Steps in a row at the sweep limit that raise an alarm. Fewer: single hard steps, which do no
+/// Number of consecutive steps at the sweep limit that raises an alarm. With fewer, single hard steps, which do no
 /// harm, would raise it.
 const STEPS_AT_LIMIT: u32 = 100;
-/// Overlap of a contact that raises an alarm, in diameters of its smaller disc: the paper's own curves end at 0.06.
+/// Overlap of a contact that raises an alarm, in diameters of its smaller disc. The paper's own curves end at 0.06.
 const LARGEST_OVERLAP: f64 = 0.05;
 /// Growth of an overlap that grains were placed with, in the same unit, that counts as a new overlap. Smaller values
 /// count the errors that a solver's tolerance allows.
 const GROWTH_OF_OVERLAP: f64 = 0.01;
-/// Part of the largest kinetic energy that contacts may create. With smaller values, errors within a solver's tolerance
-/// raise the alarm.
+/// Fraction of the largest kinetic energy that contacts may create. With smaller values, errors within a solver's
+/// tolerance raise the alarm.
 const ENERGY_OF_MOTION: f64 = 0.01;
-/// Height by which contacts may lift all grains, in mean diameters. With smaller values, a stepper that pushes overlap
-/// out raises the alarm.
+/// Height by which contacts may lift all grains, in mean diameters. With smaller values, a stepper that pushes out
+/// overlap raises the alarm.
 const ENERGY_OF_HEIGHT: f64 = 0.1;
 
 words! {
-    /// A way to go wrong.
+    /// Kind of failure.
     pub enum AlarmKind {
         NotFinite = "not-finite", "the state is no longer finite";
         GrainLost = "grain-lost", "a grain has gone through a wall";
@@ -44,24 +44,24 @@ words! {
     }
 }
 
-/// Something went wrong.
+/// A failure in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Alarm {
-    /// In which way.
+    /// Kind of failure.
     pub kind: AlarmKind,
     /// The first step that showed it.
     pub step: u64,
     /// Simulated time of that step, s.
     pub time_secs: f64,
-    /// The change that is most likely to help.
+    /// The change most likely to help.
     pub advice: Advice,
-    /// The longest time step that would do, s, where that is known.
+    /// The longest time step that would help, s, if it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_time_step_secs: Option<f64>,
-    /// The stiffness of the springs that gave way, N/m, if stiffer ones would help.
+    /// The stiffness of the springs that yielded, N/m, if stiffer ones would help.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
-    /// How often it has happened so far, where that is counted.
+    /// Number of occurrences so far, if they are counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
 }
@@ -73,7 +73,7 @@ impl Alarm {
         Self { kind, step, time_secs, advice, longest_time_step_secs, stiffness, count }
     }
 
-    /// What happened, since when, and what is most likely to help, in one sentence.
+    /// One sentence with the failure, its first step, and the change most likely to help.
     pub fn message(&self, settings: &Settings) -> String {
         let Self { kind, step, time_secs, count, .. } = self;
         let advice = self.advice_in_words(settings);
@@ -101,37 +101,37 @@ impl Alarm {
     }
 }
 
-/// What watches over a simulation. Part of it, so that a moment that is computed again says the same.
+/// The watch over a simulation. It is part of the simulation, so that a restarted run raises the same alarms.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Watch {
     unfinished_in_a_row: u32,
-    /// One of a kind.
+    /// At most one alarm of each kind.
     pub alarms: Vec<Alarm>,
     pub losses: Losses,
-    /// True where grains were placed after the last step.
+    /// True if grains were placed after the last step.
     are_placed: bool,
-    /// Least overlap that there was since grains were placed, in diameters of the smaller disc of the deepest contact.
+    /// Smallest overlap since grains were placed, in diameters of the smaller disc of the deepest contact.
     placed_overlap: f64,
-    /// Bonds that ended so far because their pairs turned.
+    /// Number of bonds that have ended because their pairs turned.
     turned_bonds: u64,
     energy: ContactEnergy,
 }
 
-/// Energy that contacts gave and took.
+/// Energy created and dissipated by contacts.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ContactEnergy {
-    /// Work of all contacts since the start, without that of walls and bonds, J.
+    /// Work of all contacts since the start, without the work of walls and bonds, J.
     work: f64,
-    /// The least that `work` has been, J.
+    /// Minimum of `work` so far, J.
     least_work: f64,
-    /// The largest kinetic energy that there was, J.
+    /// Largest kinetic energy so far, J.
     largest_kinetic_energy: f64,
 }
 
 impl Watch {
-    /// Watches over a state at t = 0, whose contacts have been found, from now on.
+    /// Starts to watch a state at t = 0 whose contacts have been found.
     pub(super) fn new(state: &State) -> Self {
         let losses = Losses::new(&state.world, state.candidates.features(), state.physics);
         let mut watch = Self { losses, ..Self::default() };
@@ -139,13 +139,13 @@ impl Watch {
         watch
     }
 
-    /// Takes the grains of a state, whose contacts have been found, as placed there.
+    /// Treats the present positions of the grains, whose contacts have been found, as their placement.
     pub(super) fn place(&mut self, state: &State) {
         self.losses.place(&state.world.grains.positions);
         (self.are_placed, self.placed_overlap) = (true, DeepestContact::of(state).overlap);
     }
 
-    /// What is wrong with grains as they were placed, before the step after these observables.
+    /// The alarm on grains as they were placed, if there is one, before the step that follows these observables.
     pub(super) fn of_placed(
         &self,
         observables: &Observables,
@@ -157,7 +157,7 @@ impl Watch {
             .then(|| Alarm::new(kind, observables, advice::on_placed(settings)))
     }
 
-    /// Raises alarms that the next step cannot mend, before it is taken.
+    /// Before a step: raises alarms on conditions that the step cannot remedy.
     pub(super) fn look_ahead(&mut self, observables: &Observables, settings: &Settings) {
         if let Some(alarm) = self.of_placed(observables, settings) {
             self.add(alarm);
@@ -165,7 +165,7 @@ impl Watch {
         self.are_placed = false;
     }
 
-    /// Looks at the state after a step, and leaves grains that are lost out of its slump.
+    /// After a step: examines the state, and excludes lost grains from the slump.
     pub(super) fn look(
         &mut self,
         state: &State,
@@ -201,16 +201,16 @@ impl Watch {
             placed if placed > LARGEST_OVERLAP => placed + GROWTH_OF_OVERLAP,
             _ => LARGEST_OVERLAP,
         };
-        // Grains that were placed in overlap fly apart, and may meet hard.
+        // Grains placed with overlap fly apart and may collide hard.
         if overlap > most && !self.has(AlarmKind::PlacedInOverlap) {
-            // A contact of an earlier step deepens because this one is not solved.
+            // A contact of an earlier step deepens because this step is not solved.
             let sinks = !observables.converged && found_in < observables.step;
             self.raise_on_depth(AlarmKind::Overlap, sinks, state, settings, observables);
         }
         self.placed_overlap = self.placed_overlap.min(overlap);
     }
 
-    /// Counts the work of the contacts in a step under a law whose contacts store no energy.
+    /// Adds the work of the contacts in a step, under a law whose contacts store no energy.
     pub(super) fn count_work(
         &mut self,
         state: &State,
@@ -239,7 +239,7 @@ impl Watch {
         }
     }
 
-    /// The advice on a state that is no longer finite, in words.
+    /// Text of the advice on a state that is no longer finite.
     pub(super) fn advice_on_overflow(&self, settings: &Settings) -> String {
         let mut alarms = self.alarms.iter().filter(|alarm| alarm.kind == AlarmKind::NotFinite);
         alarms.next().map(|alarm| alarm.advice_in_words(settings)).unwrap_or_default()
@@ -261,7 +261,7 @@ impl Watch {
             self.raise_on_depth(AlarmKind::GrainLost, sinks, state, settings, observables);
         }
         if new.left {
-            // So fast a grain can be above a fixed disc before a step and below it after.
+            // A grain this fast can be above a fixed disc before a step and below it afterwards.
             let longest = 1.0 / new.diameters_per_second;
             match observables.time_step_secs > longest {
                 true => self.raise(AlarmKind::GrainLeft, observables, Some(longest)),
@@ -270,7 +270,7 @@ impl Watch {
         }
     }
 
-    /// Raises an alarm on bodies that came too deep into each other, because unsolved steps let them sink or not.
+    /// Raises an alarm on bodies that overlap too deeply. `sinks` is true if unsolved steps let them sink.
     fn raise_on_depth(
         &mut self,
         kind: AlarmKind,
@@ -290,7 +290,7 @@ impl Watch {
         self.add(Alarm::new(kind, observables, advice));
     }
 
-    /// Raises an alarm on a time step, with the longest that would do if that is known, s.
+    /// Raises an alarm whose advice is a smaller time step, with the longest (s) that would help, if it is known.
     pub(super) fn raise(
         &mut self,
         kind: AlarmKind,
@@ -301,8 +301,8 @@ impl Watch {
         self.add(Alarm { longest_time_step_secs, ..alarm });
     }
 
-    /// Counts bonds that ended in a step because their pairs turned, and raises the alarm of them once they are more than
-    /// half as many as the contacts. In most cohesive piles that move a few end so.
+    /// Counts bonds that ended in a step because their pairs turned. Raises an alarm once their number exceeds half
+    /// the number of contacts. In most moving cohesive piles a few bonds end this way.
     pub(super) fn count_turned_bonds(
         &mut self,
         settings: &Settings,
@@ -320,7 +320,7 @@ impl Watch {
         }
     }
 
-    /// Adds an alarm, unless there is one of its kind.
+    /// Adds an alarm unless there is one of its kind.
     fn add(&mut self, alarm: Alarm) {
         if !self.has(alarm.kind) {
             self.alarms.push(alarm);
@@ -332,11 +332,11 @@ impl Watch {
     }
 }
 
-/// The contact that overlaps most, by its own size.
+/// The contact with the largest overlap relative to its size.
 struct DeepestContact {
-    /// Overlap, in diameters of the smaller disc; a wall has none.
+    /// Overlap, in diameters of the smaller disc; walls have no diameter.
     overlap: f64,
-    /// The step that it was first found in.
+    /// The step in which it was first found.
     found_in: u64,
 }
 

@@ -1,7 +1,8 @@
-//! What a hand does to a world between two steps: a grain more, a grain less, a wall drawn to another place.
+//! Interactive changes of a world between two steps: adding or removing a grain, and dragging a wall.
 //!
-//! All that was computed stays: forces and bonds of the other contacts, and what was measured. Δy_G counts a grain
-//! that is put in from the height at which it is put there, and a grain that is taken out neither then nor now.
+//! All computed values stay: forces and bonds of the other contacts, and measurements. Δy_G counts an added grain
+//! from the height at which it was added. It does not count a removed grain, neither its initial height nor its
+//! present one.
 
 use std::sync::Arc;
 
@@ -15,31 +16,30 @@ use crate::sim::simulation::Simulation;
 use crate::sim::surroundings::Surroundings;
 use crate::world::{Boundary, Disc, Edge, Grain, Motion, MotionCourse};
 
-/// Smallest and largest new grain, in mean diameters: beyond, the search for neighbours and the conditioning of
-/// steps are those of another scene.
+/// Smallest and largest new grain, in mean diameters. Outside this range the neighbour search and the conditioning of
+/// steps would be those of a different scene.
 pub const NEW_GRAIN_DIAMETERS: [f64; 2] = [0.2, 5.0];
 
-/// What a hand does between two steps.
+/// An interactive change between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Edit {
-    /// Puts a grain in, at rest, as the last one.
+    /// Adds a grain at rest, as the last one.
     Add(Disc),
-    /// Takes the grain of that number out; those after it are numbered one lower.
+    /// Removes the grain with this index; the indices of later grains decrease by one.
     Remove(u32),
-    /// Draws a boundary, so that its [`place_of`] goes straight to a point (m) and stays there until the hand
-    /// lets go.
+    /// Drags a boundary, so that its [`place_of`] moves straight to a point (m) and stays there until it is released.
     Draw {
-        /// Its number.
+        /// Index of the boundary.
         boundary: u32,
-        /// m.
+        /// Target point, m.
         to: DVec2,
     },
-    /// Lets go of the boundary, which then stays where it is.
+    /// Releases the boundary, which then stays at its place.
     LetGo,
 }
 
-/// The point of a boundary that a hand holds, m.
+/// The point of a boundary by which it is dragged, m.
 pub fn place_of(boundary: &Boundary) -> DVec2 {
     match boundary.edges().first() {
         Some(Edge::Endless { point, .. }) => *point,
@@ -48,17 +48,17 @@ pub fn place_of(boundary: &Boundary) -> DVec2 {
     }
 }
 
-/// Speed of a wall that a hand draws, in √(g·d): at Δt = 1 ms it goes a fiftieth of a diameter in a step, which every
-/// stepper bears.
+/// Speed of a dragged wall, in √(g·d). At Δt = 1 ms the wall moves a fiftieth of a diameter per step, which every
+/// stepper tolerates.
 const SPEED_OF_HAND: f64 = 0.5;
-/// An overlap below this part of a diameter is rounding.
+/// Overlap that counts as rounding, in mean diameters.
 const ROUNDING: f64 = 1e-9;
 
 impl Simulation {
-    /// Does what a hand does. What it comes to shows in the next step.
+    /// Applies an edit. Its effects appear in the next step.
     ///
     /// # Errors
-    /// Says in one sentence why it cannot be done; then nothing is changed.
+    /// States in one sentence why the edit is impossible. The simulation is then unchanged.
     pub fn edit(&mut self, edit: &Edit) -> Result<()> {
         match *edit {
             Edit::Add(disc) => self.add_grain(disc, DVec2::ZERO),
@@ -80,11 +80,11 @@ impl Simulation {
         self.surroundings = Arc::new(Surroundings::of(&self.state.world, time_step_secs));
     }
 
-    /// Sets all grains' centres, m, and leaves velocities and impulses as they are. The ways of grains begin there, so that
-    /// no wall in between counts as gone through.
+    /// Sets all grains' centres, m. Velocities and impulses do not change. The paths of grains restart at the new
+    /// places, so walls in between do not count as passed through.
     ///
     /// # Errors
-    /// Names what is refused, where these are not places of as many grains; then nothing is changed.
+    /// Names the problem if these are not valid places, one per grain. The simulation is then unchanged.
     pub fn set_positions(&mut self, positions: &[DVec2]) -> Result<()> {
         let mut world = self.state.world.clone();
         self.replace("positions", &mut world.grains.positions, positions)?;
@@ -108,7 +108,7 @@ impl Simulation {
     /// Sets all grains' velocities, m/s.
     ///
     /// # Errors
-    /// As [`Simulation::set_positions`].
+    /// Same as [`Simulation::set_positions`].
     pub fn set_velocities(&mut self, velocities: &[DVec2]) -> Result<()> {
         let mut now = self.state.world.grains.velocities.clone();
         self.replace("velocities", &mut now, velocities)?;
@@ -116,7 +116,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Puts vectors of all grains in the place of those there are.
+    /// Replaces the vectors `there` of all grains by `vectors`.
     pub(super) fn replace(&self, name: &str, there: &mut [DVec2], vectors: &[DVec2]) -> Result<()> {
         let (count, on_line) = (there.len(), self.state.physics.axes == 1);
         error::check(vectors.len() == count, name, vectors.len(), format!("{count}, one a grain"))?;
@@ -130,15 +130,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// How often that was done.
+    /// Number of edits so far.
     pub fn edits(&self) -> usize {
         self.edits as usize
     }
 
-    /// Puts a grain in as the last one, with that velocity, m/s.
+    /// Adds a grain as the last one, with the given velocity, m/s.
     ///
     /// # Errors
-    /// Where there is no room for it, it is of another scene's size, or a number is not finite; then nothing is changed.
+    /// If there is no room for the grain, its size does not suit the scene, or a number is not finite. The simulation
+    /// is then unchanged.
     pub fn add_grain(&mut self, disc: Disc, velocity: DVec2) -> Result<()> {
         let Disc { mut position, radius } = disc;
         let world = &self.state.world;
@@ -177,7 +178,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// What a disc would overlap, in words.
+    /// Name of a body that the disc would overlap, if there is one.
     fn in_the_way(&self, disc: Disc) -> Option<&'static str> {
         let (world, candidates) = (&self.state.world, &self.state.candidates);
         let reach = disc.radius - ROUNDING * world.mean_diameter;
@@ -198,10 +199,10 @@ impl Simulation {
         (0..candidates.features().len()).any(is_in_wall).then_some("a wall")
     }
 
-    /// Takes a grain out of the world. The impulses of all other contacts stay.
+    /// Removes a grain from the world. The impulses of all other contacts stay.
     ///
     /// # Errors
-    /// Where there is none of that number, or it is the only one.
+    /// If no grain has that index, or it is the only one.
     pub fn remove_grain(&mut self, grain: usize) -> Result<()> {
         let count = self.state.world.grains.len();
         if grain >= count {
@@ -228,7 +229,7 @@ impl Simulation {
         if shape.moves_by_itself() {
             return refuse("a piston");
         }
-        // What the hand had before it lets go of.
+        // A new drag releases the previous boundary.
         if self.state.is_held {
             world.motions.pop();
         }

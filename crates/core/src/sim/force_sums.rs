@@ -1,4 +1,4 @@
-//! What pairs transmit over many steps, and with which stress: for means over the time between two moments.
+//! Impulses and stresses summed over many steps, for means between two moments.
 
 use glam::{DMat2, DVec2};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use crate::sim::moment::OtherBody;
 use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
 
-/// What pairs have transmitted over some steps in a row, all shocks and pieces of steps included.
+/// Impulses transmitted by pairs over consecutive steps, including all shocks and pieces of steps.
 ///
 /// ```
 /// use slump_core::sim::ForceSums;
@@ -28,17 +28,17 @@ use crate::sim::state::State;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceSums {
-    /// The step and the edits of the run that it has come to; none before it has seen one.
+    /// The last step and number of edits that were added; `None` before the first.
     come_to: Option<(u64, usize)>,
-    /// The time of the steps that are in it, s.
+    /// Total time of the steps added, s.
     pub secs: f64,
-    /// The pairs that transmitted anything, sorted as contacts are.
+    /// Pairs that transmitted an impulse, sorted like contacts.
     pub pairs: Vec<PairSum>,
-    /// Σ P ⊗ ℓ of each grain over its contacts, J·s: ℓ from the contact point to its centre.
+    /// Σ P ⊗ ℓ of each grain over its contacts, J·s, with ℓ from the contact point to the grain's centre.
     pub stresses: Vec<DMat2>,
 }
 
-/// What one pair has transmitted.
+/// Sums of one pair.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PairSum {
@@ -46,25 +46,25 @@ pub struct PairSum {
     pub grain: u32,
     /// Body j.
     pub other: OtherBody,
-    /// Body j, as contacts are sorted by it.
+    /// Number of body j in the joint numbering, by which pairs are sorted.
     number: u32,
-    /// Steps in which it transmitted anything.
+    /// Number of steps in which the pair transmitted an impulse.
     pub steps: u64,
-    /// On grain i, N·s.
+    /// Impulse on grain i, N·s.
     pub impulse: DVec2,
-    /// Along the normals as they were, on grain i, N·s; negative pulls.
+    /// Impulse on grain i along the normals of the time, N·s; negative pulls.
     pub normal: f64,
-    /// Along (−n_y, n_x) as they were, on grain i, N·s.
+    /// Impulse on grain i along (−n_y, n_x) of the time, N·s.
     pub tangential: f64,
-    /// r × P about the origin, r where it touches grain i, N·m·s.
+    /// Moment r × P about the origin, with r the contact point on grain i, N·m·s.
     pub moment: f64,
-    /// What a surface of body j that moves did on grain i, J.
+    /// Work of a moving surface of body j on grain i, J.
     pub work: f64,
 }
 
 impl ForceSums {
-    /// Adds the last step of a run. To be called at the start and after each step; where one is missing or a hand has
-    /// changed the numbers of bodies, it begins anew.
+    /// Adds the last step of a run. Call it at the start and after each step. If a step is missing, or an edit has
+    /// changed the numbers of bodies, the sums restart.
     pub fn follow(&mut self, simulation: &Simulation) {
         let (step, edits) = (simulation.observables().step, simulation.edits());
         match self.come_to.replace((step, edits)) {
@@ -74,7 +74,7 @@ impl ForceSums {
         }
     }
 
-    /// Gives what there is, and begins anew.
+    /// Returns the sums and restarts.
     pub fn take(&mut self) -> Self {
         let fresh = Self { come_to: self.come_to, ..Self::default() };
         std::mem::replace(self, fresh)
@@ -94,7 +94,7 @@ impl ForceSums {
                 continue;
             }
             let (pair, other) = (contact.pair(), numbering.other(contact.other));
-            // Both lists are sorted alike, so one walk over the old one serves all.
+            // Both lists have the same order, so one walk over the old list suffices.
             while place < known && pairs[place].key() < pair {
                 place += 1;
             }
@@ -109,7 +109,7 @@ impl ForceSums {
             sum.normal += sums.normal;
             sum.tangential += sums.tangential;
             let i = contact.grain as usize;
-            // Where the grain was when the forces were.
+            // The grain's position at the time of the forces.
             let centre = world.grains.positions[i] - step_secs * world.grains.velocities[i];
             sum.moment += (centre - (radii[i] + contact.gap) * contact.normal).perp_dot(vector);
             if let Some(surface) = walls.surface_at(world, &contact, centre) {

@@ -1,11 +1,10 @@
-//! Grains that are lost: through a wall, or out of the world.
+//! Lost grains: grains that passed through a wall, or left the world.
 //!
-//! A wall may be thin, so that it is not the place of a centre that tells, but its way: a centre that
-//! comes from one side of a segment to the other, or through a polygon, has gone where no disc can go.
-//! Half-spaces and polygons push grains out again that are not deep inside. Ways are looked at once
-//! they are a quarter of a radius long. A disc that goes around the end of a wall stays by its radius
-//! off that end, so that no such way cuts the wall. Where walls move, ways are relative to them, and looked at in
-//! every step.
+//! A wall may be thin, so the path of a centre is decisive, not its position. A centre that moves from one side of a
+//! segment to the other, or through a polygon, was at places that no disc can reach. Half-spaces and polygons push
+//! grains out again unless they are deep inside. A path is examined when it is a quarter of a radius long. A disc
+//! that goes around the end of a wall stays at its radius from that end, so no such path cuts the wall. If walls
+//! move, paths are relative to them and are examined in every step.
 
 use glam::DVec2;
 use parry2d_f64::shape::Segment;
@@ -14,60 +13,60 @@ use serde::{Deserialize, Serialize};
 use crate::contact::Feature;
 use crate::world::{Disc, Physics, World};
 
-/// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
+/// Distance of the world's edges from the initial bounding box, in sides of the box.
 const ROOM_IN_SIDES: f64 = 3.0;
-/// How deep a centre is in a solid, or below all that was there at the start, when its grain is lost, in diameters of
-/// that grain. A half-space may push it out again; it stays lost, since where it was is no place of the scene.
+/// Depth of a centre in a solid, or below everything present at the start, at which its grain is lost, in diameters
+/// of the grain. A half-space may push the grain out again, but it stays lost, because it was outside the scene.
 const LOST_DEPTH: f64 = 1.0;
-/// Length of a way that is looked at, in radii. Longer: one around the end of a wall might cut it;
-/// shorter: every step costs as much as one in a collapse.
+/// Length of an examined path, in radii. If longer, a path around the end of a wall might cut the wall; if shorter,
+/// every step costs as much as one in a collapse.
 const WAY_IN_RADII: f64 = 0.25;
 
-/// What watches over a world's grains.
+/// The watch over lost grains of a world.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Losses {
-    /// Where each grain's way begins that has not been looked at, m.
+    /// Start of each grain's path that has not been examined yet, m.
     from: Vec<DVec2>,
     pub lost: Vec<bool>,
     pub count: u32,
-    /// y_i(0), m.
+    /// Initial heights y_i(0), m.
     initial_heights: Vec<f64>,
     world: Edges,
-    /// On a line nothing can slump.
+    /// True in scenes with one axis, which have no slump.
     on_line: bool,
-    /// True if all grains have been looked at once: some may have been in a wall from the start.
+    /// True after all grains have been examined once: some may have been in a wall from the start.
     begun: bool,
-    /// Two points of each wall when it was looked at last, m; none where no motion carries any.
+    /// Two points of each wall at the last examination, m; empty unless a motion carries walls.
     frames: Vec<[DVec2; 2]>,
 }
 
-/// Where the world ends.
+/// Edges of the world.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edges {
-    /// Corners, m; none where nothing is fixed, on open ground, or where what is fixed goes: grains may go where they
-    /// like.
+    /// Corners, m. `None` if nothing is fixed, on open ground, or if the fixed bodies move: grains may then be
+    /// anywhere.
     corners: Option<[DVec2; 2]>,
-    /// A direction and how far it goes, m: down, to the lowest of all that was there at the start.
+    /// The downward direction, and the lowest position in it of everything present at the start, m.
     bottom: Option<(DVec2, f64)>,
 }
 
-/// In which ways grains were lost since the last look.
+/// Kinds of losses since the last examination.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct NewLosses {
-    /// True if one went through a wall.
+    /// True if a grain went through a wall.
     pub through_wall: bool,
-    /// True if one left the world.
+    /// True if a grain left the world.
     pub left: bool,
-    /// Largest speed of those that left below a fixed disc, in own diameters per second.
+    /// Largest speed of grains that left below a fixed disc, in their own diameters per second.
     pub diameters_per_second: f64,
-    /// True if one was placed in a wall.
+    /// True if a grain was placed in a wall.
     pub placed: bool,
 }
 
 impl Losses {
-    /// Of a world whose boundaries are `features`, from now on.
+    /// Starts to watch a world whose boundaries are `features`.
     pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
         let positions = &world.grains.positions;
         Self {
@@ -85,7 +84,7 @@ impl Losses {
         }
     }
 
-    /// Looks where the grains have gone. Walls may have moved: `features` are where they are now.
+    /// Examines the paths of the grains. Walls may have moved; `features` are at their present places.
     pub(super) fn look(
         &mut self,
         world: &World,
@@ -109,7 +108,7 @@ impl Losses {
                 continue;
             }
             let frames = self.frames.iter().map(Some).chain(std::iter::repeat(None));
-            // A way across a periodic border is seen from either side.
+            // Examine a path across a periodic border from both sides.
             let seen_from_there = (here != from).then(|| (here, to + (here - from)));
             let ways = move || seen_from_there.into_iter().chain([(from, to)]);
             let fates = features.iter().zip(frames).flat_map(|(feature, before)| {
@@ -152,8 +151,8 @@ impl Losses {
         new
     }
 
-    /// Δy_G (paper eq. 11) of the grains that are still there: lost grains are in neither sum. NaN if all are lost,
-    /// because no grain has no mean height.
+    /// Δy_G (paper eq. 11) of the remaining grains: both sums exclude lost grains. NaN if all are lost, because the
+    /// mean height of no grains is undefined.
     pub(super) fn slump(&self, world: &World) -> f64 {
         if self.count as usize == self.lost.len() {
             return f64::NAN;
@@ -164,13 +163,13 @@ impl Losses {
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
     }
 
-    /// True where it watches over so many grains.
+    /// True if the watch is over this number of grains.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Has the ways of all grains begin at these places, m.
+    /// Restarts the paths of all grains at these places, m.
     pub(super) fn place(&mut self, positions: &[DVec2]) {
         self.from = positions.to_vec();
     }
@@ -187,7 +186,7 @@ impl Losses {
         self.lost.push(false);
     }
 
-    /// Walls may go from now on: there is no telling any more where the world ends.
+    /// Walls may move from now on, so the edges of the world are unknown.
     pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
         self.world = Edges::default();
         if self.frames.is_empty() {
@@ -198,7 +197,7 @@ impl Losses {
 
 impl Edges {
     fn of(world: &World, features: &[Feature]) -> Self {
-        // Where walls go, there is no telling where the world ends.
+        // With moving walls the edges of the world are unknown.
         if world.motions.iter().any(|motion| motion.course.is_some() || motion.drive.is_some()) {
             return Self::default();
         }
@@ -206,7 +205,7 @@ impl Edges {
         let mut fixed: Vec<DVec2> = discs.collect();
         for feature in features {
             match feature {
-                // On open ground grains may roll as far as they like.
+                // On open ground grains may roll any distance.
                 Feature::HalfSpace { .. } => return Self::default(),
                 Feature::Segment { shape, .. } => fixed.extend([shape.a, shape.b]),
                 Feature::ConvexPolygon { sides, .. } => {
@@ -220,12 +219,12 @@ impl Edges {
         let all = || world.grains.positions.iter().chain(&fixed).copied();
         let min = all().fold(DVec2::INFINITY, DVec2::min);
         let max = all().fold(DVec2::NEG_INFINITY, DVec2::max);
-        // Grains that go round come wherever the cell is.
+        // Grains that wrap around reach any place in the cell.
         let periodic = world.periodic.unwrap_or_default();
         let [low, high] = periodic.borders_or([min, max]);
         let (min, max) = (min.min(low), max.max(high));
         let side = (max - min).max_element() + world.mean_diameter;
-        // What turns has no bottom, and neither has what wraps.
+        // A scene with turning gravity or wrapping in its direction has no bottom.
         let down = world.listed_down().unwrap_or(DVec2::ZERO);
         let down = (down * (1.0 - periodic.axes())).normalize_or_zero();
         let lowest = all().map(|place| place.dot(down)).fold(f64::NEG_INFINITY, f64::max);
@@ -235,14 +234,14 @@ impl Edges {
         }
     }
 
-    /// True of a place that is beyond the corners, or deeper below the bottom than that, m.
+    /// True if a place is beyond the corners, or more than `depth` (m) below the bottom.
     fn is_outside(&self, place: DVec2, depth: f64) -> bool {
         let Self { corners, bottom } = self;
         corners.is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
             || bottom.is_some_and(|(down, lowest)| place.dot(down) > lowest + depth)
     }
 
-    /// True of a grain of that radius (m) that has left straight below a fixed disc, and not beside all of them.
+    /// True if a grain of this radius (m) has left straight below a fixed disc, and not beside all fixed discs.
     fn is_below_a_disc(&self, world: &World, place: DVec2, radius: f64) -> bool {
         self.bottom.is_some_and(|(down, _)| {
             let is_above = |disc: &Disc| {
@@ -254,16 +253,16 @@ impl Edges {
     }
 }
 
-/// What a wall did to a grain, the worst last.
+/// Fate of a grain at a wall, in increasing order of severity.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Fate {
     There,
-    /// Its centre is in a solid polygon, and where it comes out will tell.
+    /// Its centre is in a solid polygon. Its exit will show if it is lost.
     Inside,
     Lost,
 }
 
-/// Two points that go with a wall, m. A half-space asks for no way of a grain, and so for none.
+/// Two points that move with a wall, m. For a half-space no path is examined, so both points are the same.
 fn frame(feature: &Feature) -> [DVec2; 2] {
     match feature {
         Feature::HalfSpace { point, .. } => [*point; 2],
@@ -272,8 +271,8 @@ fn frame(feature: &Feature) -> [DVec2; 2] {
     }
 }
 
-/// Where a place would be now had it gone with a wall from one frame to another: a grain's way across the wall is
-/// its way relative to it.
+/// The place that `place` would have now if it had moved with a wall from one frame to another. A grain's path across
+/// a wall is measured relative to the wall.
 fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     let [then, along_now] = [before, now].map(|[from, to]| to - from);
     if before == now || then == DVec2::ZERO {
@@ -284,7 +283,7 @@ fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     now[0] + local.x * along_now + local.y * along_now.perp()
 }
 
-/// What became of a grain that went `from` a place that is in no polygon `to` another one.
+/// Fate of a grain that moved from `from`, a place in no polygon, to `to`.
 fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     let if_lost = |lost: bool| if lost { Fate::Lost } else { Fate::There };
     match feature {
@@ -304,16 +303,16 @@ fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     }
 }
 
-/// The unit normal on the right of a segment; outward for the side of an anticlockwise polygon.
+/// The unit normal on the right of a segment, which points outward for a side of an anticlockwise polygon.
 fn outward(side: &Segment) -> DVec2 {
     -(side.b - side.a).perp().normalize_or_zero()
 }
 
-/// True where the way `from` … `to` crosses a segment. A point that is shared by two segments in a row
-/// belongs to one side of the way, so that nothing slips through between them.
+/// True if the path `from` … `to` crosses a segment. A point shared by two consecutive segments belongs to one side
+/// of the path, so that nothing passes between the segments.
 fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
     let is_left = |a: DVec2, b: DVec2, place: DVec2| (b - a).perp_dot(place - a) >= 0.0;
-    // Most walls are far from most ways.
+    // Quick test: most walls are far from most paths.
     let (low, high) = (from.min(to), from.max(to));
     wall.a.min(wall.b).cmple(high).all()
         && wall.a.max(wall.b).cmpge(low).all()
@@ -321,7 +320,7 @@ fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
         && is_left(from, to, wall.a) != is_left(from, to, wall.b)
 }
 
-/// True where the way `from` … `to`, both outside of a convex polygon, goes through it.
+/// True if the path `from` … `to`, with both ends outside a convex polygon, passes through the polygon.
 fn cuts(from: DVec2, to: DVec2, sides: &[Segment]) -> bool {
     let (mut enters, mut leaves) = (0f64, 1f64);
     for side in sides {

@@ -1,4 +1,4 @@
-//! The step, what it measures, and what it shows.
+//! Time stepping, measurements of each step, and views of the state.
 
 mod advice;
 mod alarm;

@@ -1,4 +1,4 @@
-//! One moment of a run in full, as tables and measures need it: every grain, and every contact with its forces.
+//! The full state at one moment, for tables and measurements: every grain, and every contact with its forces.
 
 use std::sync::Arc;
 
@@ -17,33 +17,33 @@ use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
 use crate::world::{FrictionCone, Parameters, World};
 
-/// How close to its bound a friction force slips, as a part of the bound. Smaller: contacts that slip stick
-/// where a method ends near the bound and not on it; larger: contacts that nearly slip do.
+/// Largest relative distance of a friction force from its bound that counts as slip. If smaller, slipping contacts of
+/// solvers that end near the bound count as sticking; if larger, sticking contacts near the bound count as slipping.
 const SLIPS_WITHIN: f64 = 1e-6;
-/// How close to its cohesion a contact's pull is all that it can bear, as a part of the cohesion: rounding.
+/// Largest relative distance of a pull from the cohesion that counts as the full cohesion: rounding.
 const OPENS_WITHIN: f64 = 1e-9;
 
-/// One moment of a run. Plain data: it outlives the simulation.
+/// The full state at one moment. Plain data that outlives the simulation.
 #[derive(Clone, Debug)]
 pub struct Moment {
-    /// What the last step measured.
+    /// Measurements of the last step.
     pub observables: Observables,
-    /// How the next step is taken, and as a rule how the last one was.
+    /// Settings of the next step, which usually are those of the last one.
     pub settings: Settings,
     /// The moving discs; grain k is `grains[k]`.
     pub grains: Vec<GrainState>,
     /// The contacts of the last step, sorted by (grain, other).
     pub contacts: Vec<ContactState>,
-    /// What no grain moves, where it is now.
+    /// Boundaries and fixed discs at their present places.
     pub surroundings: Arc<Surroundings>,
-    /// The number of the first fixed disc, which follows those of the grains that the run began with.
+    /// The number of the first fixed disc. It follows the numbers of the grains present at the start.
     pub first_fixed_id: u32,
 }
 
 impl Moment {
-    /// The number that a grain keeps for the whole run. `grain` is its place in the list.
+    /// The permanent number of a grain, given its index in the list.
     pub fn id(&self, grain: u32) -> u32 {
-        // What sums have of a grain that was taken out since is of its place alone.
+        // Sums keep only the index of a grain that has been removed since.
         self.grains.get(grain as usize).map_or(grain, |state| state.id)
     }
 }
@@ -51,58 +51,60 @@ impl Moment {
 /// One grain at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrainState {
-    /// The number that it keeps for the whole run.
+    /// Permanent number.
     pub id: u32,
     /// Centre, m.
     pub position: DVec2,
-    /// Where it was at the start, and all its ways since, m: borders that wrap have no part in it.
+    /// Initial position plus all displacements since, m, without the effect of periodic borders.
     pub unwrapped: DVec2,
-    /// Angle turned since the start, rad.
+    /// Rotation angle since the start, rad.
     pub angle: f64,
     /// Velocity of the centre, m/s.
     pub velocity: DVec2,
     /// Angular velocity, rad/s, positive anticlockwise.
     pub angular_velocity: f64,
-    /// m.
+    /// Radius, m.
     pub radius: f64,
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// True where the gravity field acts on it.
+    /// True if gravity acts on the grain.
     pub feels_gravity: bool,
-    /// Grey that the scene gives it: 0 black … 255 white.
+    /// Grey from the scene: 0 is black, 255 white.
     pub tone: u8,
-    /// True where it went through a wall or left the world.
+    /// True if the grain went through a wall or left the world.
     pub lost: bool,
 }
 
-/// A pair that touches since the last step, or transmitted anything in it. Forces are the means over that step, all its
-/// shocks and pieces included. Normal and gap are those that the step began with, or the piece of it in which the pair was
-/// found; they go with the positions before it: grains have moved by Δt·v since.
+/// A pair that touched in the last step or transmitted an impulse in it. Forces are means over the step, including
+/// all its shocks and pieces. Normal and gap are from the beginning of the step, or of the piece in which the pair
+/// was found. They belong to the positions at that time: grains have moved by Δt·v since.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
     /// Grain i.
     pub grain: u32,
     /// Body j.
     pub other: OtherBody,
-    /// n, from j to i.
+    /// Normal n, from j to i.
     pub normal: DVec2,
-    /// m; negative is overlap.
+    /// Gap, m; negative for an overlap.
     pub gap: f64,
-    /// Half-way between the two surfaces, m, as grain i is now.
+    /// Point half-way between the two surfaces, m, for the present position of grain i.
     pub point: DVec2,
-    /// From the centre of j, or from the touched point of a boundary, to the centre of i, m.
+    /// Vector from the centre of j, or from the touched point of a boundary, to the centre of i, m.
     pub branch: DVec2,
-    /// On grain i, newton.
+    /// Force on grain i, newton.
     pub force: DVec2,
-    /// N, newton, along n on grain i; negative pulls. Where n turns within the step, the mean of what is along it.
+    /// Normal force N on grain i along n, newton; negative pulls. If n turns within the step, the mean of the
+    /// component along n.
     pub normal_force: f64,
-    /// T, newton, along (−n_y, n_x) on grain i, likewise: times its radius it is the torque on each grain.
+    /// Tangential force T on grain i along (−n_y, n_x), newton, defined likewise. Times a grain's radius it is the
+    /// torque on that grain.
     pub tangential_force: f64,
-    /// What the friction law makes of it.
+    /// Status under the contact law.
     pub status: ContactStatus,
-    /// s: how far its bond is stretched, m; none where no bond lives, and but under the law `range`.
+    /// Stretch s of its bond, m. `None` without a bond, and under laws other than `range`.
     pub bond_stretch: Option<f64>,
-    /// Steps since the pair was first found to touch without a break.
+    /// Number of steps since the pair was first found to touch without interruption.
     pub age_steps: u64,
 }
 
@@ -110,11 +112,11 @@ pub struct ContactState {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum OtherBody {
-    /// A grain, by its number.
+    /// A grain, by its index.
     Grain(u32),
-    /// A fixed disc, by its number among those.
+    /// A fixed disc, by its index.
     FixedDisc(u32),
-    /// A boundary, by its number among those.
+    /// A boundary, by its index.
     Boundary(u32),
 }
 
@@ -129,7 +131,7 @@ impl OtherBody {
 }
 
 words! {
-    /// What a contact does under Signorini's and Coulomb's laws.
+    /// Status of a contact under Signorini's and Coulomb's laws.
     pub enum ContactStatus {
         Open = "open", "pulls as hard as it can, and opens";
         Stick = "stick", "friction is below its bound";
@@ -138,7 +140,7 @@ words! {
 }
 
 impl Simulation {
-    /// This moment in full.
+    /// The full state at this moment.
     pub fn moment(&self) -> Moment {
         let State { world, candidates, contacts, .. } = &self.state;
         let laws = Laws::of(self);
@@ -152,7 +154,7 @@ impl Simulation {
             let Transmitted { contact, found_in, sums, vector } = transmitted;
             let bond = index.map_or_else(Bond::default, |index| contacts.bonds()[index]);
             let is_in_touch = index.is_some_and(|index| contacts.is_in_touch(index));
-            // A bond that has no strength holds nothing that is open.
+            // A bond without strength does not hold an open pair.
             let is_held = is_in_touch && (contact.gap <= touch || laws.has_strength());
             if !is_held && sums == Impulse::default() {
                 return None;
@@ -164,7 +166,7 @@ impl Simulation {
             let status = laws.status(&contact, other, alive, [normal_force, tangential_force]);
             let grain = contact.grain as usize;
             let (centre, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
-            // A boundary is touched in a point.
+            // A boundary is touched at a point.
             let radius_of_other = match other {
                 Other::Grain(index) => world.grains.radii[index],
                 Other::FixedDisc(index) => world.fixed_discs[index].radius,
@@ -210,7 +212,7 @@ impl Simulation {
     }
 }
 
-/// What tells a contact's status from its impulses.
+/// Inputs for a contact's status.
 struct Laws<'a> {
     world: &'a World,
     parameters: &'a Parameters,
@@ -233,12 +235,12 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// True where bonds pull, if the law has any.
+    /// True if bonds can pull, or if the law has no bonds.
     fn has_strength(&self) -> bool {
         !self.has_bonds || (self.has_cohesion && self.parameters.bond > 0.0)
     }
 
-    /// Of a contact with the forces N and T.
+    /// Status of a contact with the forces N and T.
     fn status(
         &self,
         contact: &Contact,
@@ -262,7 +264,7 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// C₀, newton; none for a pair that has no bond under a law that asks for one.
+    /// C₀, newton; 0 for a pair without a bond under a law that requires one.
     fn cohesion(&self, contact: &Contact, other: Other, bonded: bool) -> f64 {
         if !self.has_cohesion || (self.has_bonds && !bonded) {
             return 0.0;

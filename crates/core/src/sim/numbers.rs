@@ -1,4 +1,4 @@
-//! What the numbers of a simulation's settings come to in its world.
+//! Derived quantities of a simulation's settings in its world.
 
 use crate::sim::Settings;
 use crate::sim::settings::FractureWork;
@@ -6,13 +6,13 @@ use crate::sim::simulation::Simulation;
 use crate::solver::{Method, picked};
 
 impl Simulation {
-    /// Substeps of the next step: 1 where its problem is solved as a whole.
+    /// Substeps of the next step: 1 if its problem is solved as a whole.
     pub fn substeps(&self) -> u32 {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// The method that solves the next step: that of the settings, or the one that `auto` picks.
+    /// The solver of the next step: that of the settings, or the one that `auto` selects.
     pub fn picked_method(&self) -> Method {
         let Settings { solver, parameters, .. } = &self.settings;
         let rubs = self.state.physics.friction && parameters.friction > 0.0;
@@ -23,21 +23,21 @@ impl Simulation {
         self.state.world.motions.iter().any(|motion| motion.drive.is_some())
     }
 
-    /// The longest substep, s, with which the springs of the next step are surely stable; none
-    /// where there are no springs.
+    /// The longest substep, s, for which the springs of the next step are guaranteed to be stable; `None` without
+    /// springs.
     pub fn critical_time_step_secs(&self) -> Option<f64> {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().critical_time_step_secs)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// How long two grains of the mean mass that meet push each other, s; none where contacts are no springs.
+    /// Duration of a collision of two grains of the mean mass, s; `None` if contacts are not springs.
     pub fn contact_time_secs(&self) -> Option<f64> {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().contact_time_secs)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// What it takes to break the bond of two grains of the mean mass slowly; none where the law does not say, or
-    /// nothing coheres.
+    /// Work that slowly breaks the bond of two grains of the mean mass. `None` if the law does not define it, or
+    /// without cohesion.
     pub fn fracture_work(&self) -> Option<FractureWork> {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().fracture_work)(&self.state.world, self.state.physics, parameters)

@@ -1,4 +1,4 @@
-//! What every step reports of itself: the columns, how they are found, and what plots show of them.
+//! Observables of each step: their definitions, computation and plots.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,8 @@ use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Measures, Model, SolveReport};
 use crate::world::{Drive, Periodic};
 
-/// Measured after each step. One row of the observables' CSV, which has the names of columns in recordings.
+/// Measurements after each step. They form one row of the observables' CSV file and use the column names of
+/// recordings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observables {
     /// Steps taken so far.
@@ -21,36 +22,35 @@ pub struct Observables {
     /// Δt of this step, s.
     #[serde(rename = "time_step")]
     pub time_step_secs: f64,
-    /// Sweeps of the solver; of a scheme, its passes over all contacts.
+    /// Sweeps of the solver. For steppers without a solver, passes over all contacts.
     pub sweeps: u32,
-    /// Matrices that the solver factorised.
+    /// Number of matrices factorised by the solver.
     pub factorisations: u32,
-    /// True where the stopping test was met within the sweep limit; true for a scheme, which does a
-    /// fixed amount of work and tests nothing. What its step is worth, `residual` tells.
+    /// True if the stopping test was met within the sweep limit. Always true for steppers without a solver, which do
+    /// a fixed amount of work and test nothing; `residual` shows the quality of their steps.
     pub converged: bool,
-    /// True where a step that did not converge had stalled: its residual had stopped falling, so that
-    /// more sweeps are of no use. As a rule it has no solution (`docs/accuracy-and-cost.md`).
+    /// True if a step that did not converge had stalled: its residual had stopped decreasing, so that more sweeps do
+    /// not help. Such a step usually has no solution (`docs/accuracy-and-cost.md`).
     #[serde(default)]
     pub stalled: bool,
-    /// The common residual (`solver::residual`), dimensionless. For a scheme: that of the step's
-    /// problem with the impulses that the scheme summed up and the velocities it ended with.
+    /// Common residual (`solver::residual`), dimensionless. For steppers without a solver it is that of the step's
+    /// problem with the summed impulses and the final velocities.
     pub residual: f64,
-    /// The same measure of the model of friction that was solved in the place of Coulomb's law,
-    /// dimensionless; none under that law.
+    /// Residual for the friction model that was solved instead of Coulomb's law, dimensionless; `None` under
+    /// Coulomb's law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_residual: Option<f64>,
-    /// How far the velocities are taken to be from those that Coulomb's law asks for, whatever was solved, m/s: root mean
-    /// square over the grains that touch something, weighted with mass
-    /// ([`VelocityError`](crate::solver::VelocityError)).
+    /// Estimated distance of the velocities from those of Coulomb's law, whatever model was solved, m/s: the
+    /// mass-weighted root mean square over the grains in contact ([`VelocityError`](crate::solver::VelocityError)).
     #[serde(default)]
     pub velocity_error: f64,
-    /// All contacts, with grains and with fixed shapes.
+    /// Number of contacts, with grains and with fixed shapes.
     pub contacts: u32,
-    /// Contacts with N > 0.
+    /// Number of contacts with N > 0.
     pub compressive_contacts: u32,
-    /// Contacts with N < 0.
+    /// Number of contacts with N < 0.
     pub tensile_contacts: u32,
-    /// δ: mean of |gap|/d over touching grain pairs.
+    /// Mean overlap δ: mean of |gap|/d over touching grain pairs.
     pub mean_overlap: f64,
     /// Largest overlap of any contact, in units of d.
     pub max_overlap: f64,
@@ -58,39 +58,39 @@ pub struct Observables {
     pub kinetic_energy: f64,
     /// Potential energy in the gravity field, J.
     pub potential_energy: f64,
-    /// Work that the normal contact forces did in this step, J.
+    /// Work of the normal contact forces in this step, J.
     pub normal_work: f64,
-    /// Work that the tangential contact forces did in this step, J.
+    /// Work of the tangential contact forces in this step, J.
     pub tangential_work: f64,
-    /// Work that surfaces which move did on grains in this step, a part of the two before, J: what is left of those
-    /// is what contacts took.
+    /// Work of moving surfaces on grains in this step, J. It is part of the two works above; the rest of them is
+    /// the work of the contacts themselves, negative if they dissipate.
     #[serde(default)]
     pub wall_work: f64,
-    /// Σ ½MV² of the walls that a force drives, along the axes of the forces, J. None where there are no such walls.
+    /// Σ ½MV² of the walls driven by a force, along the axes of the forces, J. `None` without such walls.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_energy: Option<f64>,
-    /// Work in this step of the forces that drive walls, less what the walls' damping took, J: it changes
-    /// `drive_energy` by what the walls did not hand on to grains. None where there are no such walls.
+    /// Work in this step of the forces that drive walls, minus the loss in the walls' damping, J. It changes
+    /// `drive_energy`, except for the energy transferred to grains. `None` without such walls.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_work: Option<f64>,
-    /// Work that borders which shear did in this step, beside the other works, J: through contacts with images that
-    /// slide, and on grains that crossed. None where no border shears.
+    /// Work of sheared borders in this step, in addition to the other works, J: through contacts with sliding images,
+    /// and on grains that crossed. `None` without sheared borders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub border_work: Option<f64>,
-    /// Work of the gravity field, of body forces, and of a spring that pulls a grain, in this step, J.
+    /// Work in this step of gravity, of body forces, and of a spring that pulls a grain, J.
     pub gravity_work: f64,
-    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), both sums over the grains that are not
-    /// lost; 0 where Σ y_i(0) is 0, and NaN where all grains are lost.
+    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), with both sums over the grains that are not lost. 0 if
+    /// Σ y_i(0) is 0, and NaN if all grains are lost.
     #[serde(with = "number")]
     pub slump: f64,
-    /// Work that bonds did in this step, a part of `normal_work`, J: negative while they are
-    /// stretched. None but under the law `range`, as all that is told of bonds.
+    /// Work of bonds in this step, part of `normal_work`, J: negative while they are stretched. All columns on bonds
+    /// are `None` except under the law `range`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond_work: Option<f64>,
-    /// Σ C₀ s over the bonds that live, J: what stretching them took.
+    /// Energy stored in existing bonds, Σ C₀ s, J.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond_energy: Option<f64>,
-    /// What bonds took that have broken since the start, J: C₀ δ_c each.
+    /// Energy dissipated by broken bonds since the start, C₀ δ_c each, J.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_bond_energy: Option<f64>,
     /// Grains that went through a wall or left the world since the start.
@@ -99,20 +99,18 @@ pub struct Observables {
 }
 
 impl Observables {
-    /// True where it tells of what only some runs have: bonds, a model of friction, walls that a force drives, or
-    /// borders that shear.
+    /// True if it has columns that only some runs have: bonds, a friction model, driven walls or sheared borders.
     pub fn has_further_columns(&self) -> bool {
         let Self { bond_work, model_residual, drive_energy, border_work, .. } = self;
         [bond_work, model_residual, drive_energy, border_work].iter().any(|some| some.is_some())
     }
 
-    /// True where a step was solved under another model of friction than Coulomb's law.
+    /// True if the step was solved under a friction model other than Coulomb's law.
     pub fn is_of_a_model(&self) -> bool {
         self.step > 0 && self.model_residual.is_some_and(|left| left != self.residual)
     }
 
-    /// With numbers that are none where there is not what they tell of, so that rows with and without them fit in
-    /// one table.
+    /// Replaces missing columns by NaN, so that rows with and without them fit in one table.
     pub fn with_further_columns(self) -> Self {
         let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
         Self {
@@ -128,7 +126,7 @@ impl Observables {
     }
 }
 
-/// The observables after a step of Δt that began with those `before`.
+/// The observables after a step of Δt, given those `before` it.
 pub(super) fn after_step<M: Model>(
     stage: &Stage<'_, M>,
     result: StepResult,
@@ -148,8 +146,8 @@ pub(super) fn after_step<M: Model>(
     }
 }
 
-/// The observables of an initial state whose contacts have been found: energies, and the contacts that
-/// are there before any impulse. The settings say which observables a step has.
+/// The observables of an initial state whose contacts have been found: energies, and contacts without impulses. The
+/// settings determine which columns exist.
 pub(super) fn at_start<M: Model>(
     state: &State,
     settings: &Settings,
@@ -168,8 +166,8 @@ pub(super) fn at_start<M: Model>(
     of_state::<M>(state, result, kinetic_energy, time_step_secs, initial_heights)
 }
 
-/// What a state and what led to it tell, as at the beginning of a run. Each observable is named, so that none
-/// is forgotten.
+/// The observables of a state and of the step that led to it, with the values of the beginning of a run for the rest.
+/// Every field is named, so that none is forgotten.
 fn of_state<M: Model>(
     state: &State,
     result: StepResult,
@@ -214,12 +212,12 @@ fn of_state<M: Model>(
         drive_work: drive_energy.map(|_| drive_work),
         border_work: is_sheared.then_some(border_work),
         gravity_work,
-        // On a line nothing can slump, and about a mean height of 0 a relative drop says nothing.
+        // On a line there is no slump, and relative to a mean height of 0 it is undefined.
         slump: if M::AXES == 1 || initial_heights == 0.0 { 0.0 } else { dropped / initial_heights },
         bond_work: bonds.map(|bonds| bonds.work),
         bond_energy: bonds.map(|bonds| bonds.stored),
         broken_bond_energy: bonds.map(|bonds| bonds.broken),
-        // Who watches over the run knows (`sim::losses`).
+        // Set later by the watch over lost grains (`sim::losses`).
         lost_grains: 0,
     }
 }
@@ -238,7 +236,7 @@ pub(super) fn heights(state: &State) -> [f64; 2] {
     [heights, potential_energy]
 }
 
-/// Mean overlap of grains that touch and largest of all contacts, in d.
+/// Mean overlap of touching grain pairs, and largest overlap of all contacts, in d.
 pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
     let State { world, contacts, .. } = state;
     let numbering = Numbering::of(world);
@@ -251,7 +249,7 @@ pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
         }
         deepest = deepest.max((-contact.gap).positive_part());
         if let Other::Grain(_) = numbering.other(contact.other) {
-            // A bond may be stretched; what is not overlap does not count as such.
+            // A bond may be stretched; its opening does not count as overlap.
             overlap_of_pairs +=
                 if bonds { (-contact.gap).positive_part() } else { contact.gap.abs() };
             pairs += 1;
@@ -263,28 +261,28 @@ pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
     ]
 }
 
-/// Something to plot of rows of a kind.
+/// A quantity of rows that can be plotted.
 #[derive(Clone, Copy, Debug)]
 pub struct Quantity<Row: 'static> {
-    /// Its name on buttons.
+    /// Name on buttons.
     pub name: &'static str,
-    /// What it shows.
+    /// Title of the plot.
     pub title: &'static str,
-    /// Its unit, if that takes prefixes such as k.
+    /// Unit, if it can take prefixes such as k.
     pub unit: &'static str,
-    /// True where equal distances are equal factors.
+    /// True if the axis is logarithmic.
     pub logarithmic: bool,
-    /// Its value.
+    /// Value of a row.
     pub value: fn(&Row) -> f64,
-    /// What is shown beside it where there is any, the first dashed and the second dotted: names and values.
+    /// Names and values of additional curves, if they exist: the first is dashed, the second dotted.
     pub beside: &'static [Beside<Row>],
 }
 
-/// Name and value.
+/// Name and value of an additional curve.
 pub type Beside<Row> = (&'static str, fn(&Row) -> Option<f64>);
 
 impl<Row> Quantity<Row> {
-    /// Without a unit, on a linear axis, alone.
+    /// No unit, a linear axis, and no additional curves.
     pub const PLAIN: Self = Self {
         name: "",
         title: "",
@@ -295,7 +293,7 @@ impl<Row> Quantity<Row> {
     };
 }
 
-/// What can be plotted, in the order in which it is shown.
+/// Quantities that can be plotted, in display order.
 pub const QUANTITIES: &[Quantity<Observables>] = &[
     Quantity { name: "slump", title: "slump Δy", value: |row| row.slump, ..Quantity::PLAIN },
     Quantity {
@@ -336,7 +334,7 @@ mod tests {
 
     #[test]
     fn every_column_is_plotted_or_said_not_to_be() {
-        // A step that was solved under a model: others have nothing of it to plot.
+        // A step solved under a friction model: other steps have no model residual to plot.
         let plain = Observables { step: 7, model_residual: Some(0.5), ..Observables::default() };
         let columns = serde_json::to_value(plain.with_further_columns()).unwrap();
         let columns = columns.as_object().unwrap();

@@ -1,4 +1,4 @@
-//! A hand on a grain: a damped spring between its centre and a point that the user moves.
+//! Pulling a grain interactively: a damped spring between its centre and a point that the user moves.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 use crate::solver::Model;
 use crate::world::{Parameters, World};
 
-/// Stiffness per mass of the grain, in units of g/d: one diameter of stretch pulls with this many
-/// times the grain's weight.
+/// Stiffness per mass of the grain, in units of g/d: a stretch of one diameter pulls with this many times the grain's
+/// weight.
 const STIFFNESS: f64 = 40.0;
-/// g that numbers refer to on a scene without gravity, m/s².
+/// g used for scaling in a scene without gravity, m/s².
 const GRAVITY_IF_NONE: f64 = 9.8;
 
-/// Acceleration that a hand's stiffness and speed are measured in, m/s²: the scene's gravity, if it has any.
+/// Acceleration that scales the stiffness and speed of interactive pulls, m/s²: the scene's gravity, if it has any.
 pub(super) fn gravity_that_scales(world: &World) -> f64 {
     or_if_none(world.gravity.magnitude())
 }
 
-/// Acceleration that the springs of contacts are measured in, m/s²: the scene's gravity, or that of the cohesion force
-/// in a scene without gravity. Springs that are softer give way to a bond by more than a diameter.
+/// Acceleration that scales the springs of contacts, m/s²: the scene's gravity, or that of the cohesion force in a
+/// scene without gravity. Softer springs would yield to a bond by more than a diameter.
 pub(super) fn acceleration_of_springs(world: &World, parameters: &Parameters) -> f64 {
     or_if_none(parameters.accelerating(world.gravity.magnitude()))
 }
@@ -35,13 +35,13 @@ fn or_if_none(acceleration: f64) -> f64 {
 pub struct Pull {
     /// Index of the grain.
     pub grain: u32,
-    /// Where the other end of the spring is held, m.
+    /// Position of the spring's other end, m.
     pub target: DVec2,
 }
 
 impl Pull {
-    /// What the spring adds to the velocity of its grain in one step of `time_step_secs`, m/s. The
-    /// spring is damped critically and integrated implicitly: no time step makes it swing up.
+    /// Velocity change of the grain by the spring in one step of `time_step_secs`, m/s. The spring is critically
+    /// damped and integrated implicitly, so no time step makes its oscillation grow.
     fn added_velocity(self, world: &World, time_step_secs: f64) -> DVec2 {
         let grains = &world.grains;
         let index = self.grain as usize;
@@ -54,7 +54,7 @@ impl Pull {
         time_step_secs * acceleration / (1.0 + 2.0 * turn + turn * turn)
     }
 
-    /// The push of the spring in the next `time_step_secs`, where it pushes.
+    /// The push of the spring in the next `time_step_secs`, if it is not zero.
     pub(super) fn push(self, world: &World, axes: usize, time_step_secs: f64) -> Option<Push> {
         let mut change = self.added_velocity(world, time_step_secs);
         if axes == 1 {
@@ -64,7 +64,7 @@ impl Pull {
     }
 }
 
-/// What pushes a grain in a step: by how much (m/s) it changes its velocity, and along which unit vector.
+/// Push on a grain in a step: velocity change (m/s) and its direction as a unit vector.
 pub(crate) struct Push {
     grain: usize,
     direction: DVec2,
@@ -72,14 +72,14 @@ pub(crate) struct Push {
 }
 
 impl Push {
-    /// One that changes the velocity of a grain by `change`, m/s; none where it changes nothing.
+    /// A push that changes the velocity of a grain by `change`, m/s; `None` if that is zero.
     pub(super) fn of(grain: usize, change: DVec2) -> Option<Self> {
         let speed = change.length();
         (speed > 0.0).then(|| Self { grain, direction: change / speed, speed })
     }
 
     pub(super) fn apply<M: Model>(&self, bodies: &mut [M::Body<f64>]) {
-        // A normal impulse against a fixed body changes the velocity by just itself.
+        // A normal impulse against a fixed body changes the velocity by exactly this amount.
         let normal = M::normal(self.direction.to_array());
         M::push_single(&mut bodies[self.grain], normal, [self.speed, 0.0]);
     }

@@ -1,4 +1,4 @@
-//! Many steps in a row, what is done to the grains between them, and what a run amounts to.
+//! Consecutive steps, changes of the grains between them, and statistics of a run.
 
 use std::ops::ControlFlow;
 
@@ -12,23 +12,23 @@ use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
 use crate::solver::worst;
 
-/// How many steps in a row ended.
+/// Reason for the end of consecutive steps.
 #[derive(Debug)]
 pub enum RunEnding {
     /// All steps were taken.
     Done,
-    /// A call after a step said so.
+    /// A call after a step ended the run.
     Stopped,
-    /// The state is no longer finite, for this reason.
+    /// The state is no longer finite, with the error.
     NotFinite(Error),
 }
 
 impl Simulation {
-    /// Takes so many steps. `after` is called after each, and can end the run. A state that is no
-    /// longer finite ends it too, and is no error of the run's.
+    /// Takes `steps` steps. `after` is called after each step and can end the run. A state that is no longer finite
+    /// ends the run too, but is not returned as an error.
     ///
     /// # Errors
-    /// What `after` fails with.
+    /// The error of `after`.
     pub fn run(
         &mut self,
         steps: u64,
@@ -47,10 +47,10 @@ impl Simulation {
         Ok(RunEnding::Done)
     }
 
-    /// Takes so many steps.
+    /// Takes `steps` steps.
     ///
     /// # Errors
-    /// Where the state is no longer finite after one of them.
+    /// If the state is no longer finite after one of them.
     pub fn take_steps(&mut self, steps: u64) -> Result<()> {
         match self.run(steps, |_| Ok(ControlFlow::Continue(())))? {
             RunEnding::NotFinite(failure) => Err(failure),
@@ -58,7 +58,7 @@ impl Simulation {
         }
     }
 
-    /// Sets all velocities to zero and forgets the contacts' impulses.
+    /// Sets all velocities to zero and clears the contacts' impulses.
     pub fn bring_to_rest(&mut self) {
         let State { world, contacts, .. } = &mut self.state;
         world.grains.velocities.fill(DVec2::ZERO);
@@ -79,22 +79,22 @@ impl Simulation {
     }
 }
 
-/// Sums over the steps of a run.
+/// Statistics over the steps of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
-    /// Steps taken.
+    /// Number of steps.
     pub steps: u64,
-    /// Steps whose stopping test was not met within the sweep limit.
+    /// Number of steps whose stopping test was not met within the sweep limit.
     pub unconverged_steps: u64,
-    /// Those of them that had stalled, so that more sweeps are of no use.
+    /// Number of these steps that had stalled, so that more sweeps do not help.
     #[serde(default)]
     pub stalled_steps: u64,
-    /// Sweeps of all steps.
+    /// Total number of sweeps.
     pub sweeps: u64,
     /// Largest common residual of any step.
     #[serde(with = "number")]
     pub largest_residual: f64,
-    /// Largest estimate of the velocities' error of any step, m/s.
+    /// Largest estimated velocity error of any step, m/s.
     #[serde(with = "number", default)]
     pub largest_velocity_error: f64,
     /// Mean over the steps of the mean overlap, in units of d.
@@ -103,13 +103,13 @@ pub struct Tally {
     /// Largest overlap of any contact in any step, in units of d.
     #[serde(with = "number")]
     pub max_overlap: f64,
-    /// Mean over the steps of the number of contacts.
+    /// Mean number of contacts over the steps.
     #[serde(with = "number", default)]
     pub mean_contacts: f64,
 }
 
 impl Tally {
-    /// Counts one more step; the last one too if its state is no longer finite.
+    /// Counts one more step, also the last one if its state is no longer finite.
     pub fn add(&mut self, step: &Observables) {
         self.steps += 1;
         self.unconverged_steps += u64::from(!step.converged);

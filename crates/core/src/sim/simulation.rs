@@ -1,4 +1,4 @@
-//! A running simulation: a world and what is needed to step it.
+//! A running simulation: a world and everything needed to step it.
 
 use std::sync::Arc;
 
@@ -21,11 +21,11 @@ use crate::solver::{Model, ModelParts, Slots, Slotted, SolverSettings, StepProbl
 use crate::world::{Parameters, Physics, World};
 use crate::{threads, with_model};
 
-/// A world in motion.
+/// A simulation of a world.
 ///
-/// Cloning it gives a second simulation that goes on bitwise as the first one would, and so does writing it to a file.
-/// Left out is what every step makes anew: the step's problem, and what methods keep from one solve to the next, on
-/// which no result depends (`tests/program/restart/` holds all of them to that).
+/// A clone continues bitwise as the original would, and so does a simulation written to a file and read back. A file
+/// does not contain data that every step recomputes: the step's problem, and data that solvers keep from one solve to
+/// the next, on which no result depends (`tests/program/restart/` checks this for all solvers).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub struct Simulation {
@@ -36,22 +36,22 @@ pub struct Simulation {
     slots: Slots,
     memory: StepperMemory,
     observables: Observables,
-    /// Σ y_i(0), m, of eq. 11.
+    /// Initial sum of heights Σ y_i(0), m, of eq. 11.
     pub(super) initial_heights: f64,
-    /// The way that the last step was taken: the contacts' memories are its own.
+    /// The stepper of the last step. The contacts' memories belong to it.
     last_stepper: Option<Stepper>,
     pub(super) watch: Watch,
     pub(super) surroundings: Arc<Surroundings>,
-    /// How often a hand has changed the world.
+    /// Number of interactive edits.
     pub(super) edits: u32,
 }
 
 impl Simulation {
-    /// Sets a world up at t = 0. Pairs touch below a gap of `gap_tolerance` (m, ≥ 0), which is there
-    /// for rounding alone.
+    /// Creates a simulation of `world` at t = 0. Pairs touch below a gap of `gap_tolerance` (m, ≥ 0), which only
+    /// allows for rounding.
     ///
     /// # Errors
-    /// Names the first field that is outside its range, or that does not go with the others.
+    /// Names the first field that is outside its range or incompatible with others.
     pub fn new(
         mut world: World,
         physics: Physics,
@@ -98,8 +98,8 @@ impl Simulation {
     /// Takes one step.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] where a position, velocity or the kinetic energy is no longer a number; the
-    /// state is then left as it is, for looking at.
+    /// [`Error::NonFinite`] if a position, a velocity or the kinetic energy is no longer a number. The state is kept
+    /// for inspection.
     pub fn step(&mut self) -> Result<&Observables> {
         self.watch.look_ahead(&self.observables, &self.settings);
         self.become_of(Some(self.settings.stepper));
@@ -113,11 +113,11 @@ impl Simulation {
         self.look()
     }
 
-    /// Takes one step and tells what it took by a clock, which gives s since some moment. The step is the one that
-    /// [`Simulation::step`] would have taken.
+    /// Takes one step and measures its parts with `clock`, which returns seconds since any moment. The step is the
+    /// same as that of [`Simulation::step`].
     ///
     /// # Errors
-    /// As [`Simulation::step`].
+    /// Same as [`Simulation::step`].
     pub fn timed_step(&mut self, clock: fn() -> f64) -> Result<StepTimes> {
         self.state.stopwatch = Stopwatch { clock: Some(clock), ..Stopwatch::default() };
         let begun = clock();
@@ -127,7 +127,7 @@ impl Simulation {
         outcome.map(|()| StepTimes { total_secs, ..times })
     }
 
-    /// Takes one step in a way of your own, in place of the settings' stepper.
+    /// Takes one step with your own stepper instead of the stepper of the settings.
     ///
     /// ```
     /// use slump_core::sim::{Advance, StepResult, Settings, Stage};
@@ -150,7 +150,7 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// As [`Simulation::step`].
+    /// Same as [`Simulation::step`].
     pub fn step_by(&mut self, own: &mut (impl Advance + Send)) -> Result<&Observables> {
         self.watch.look_ahead(&self.observables, &self.settings);
         self.become_of(None);
@@ -158,7 +158,7 @@ impl Simulation {
         self.look()
     }
 
-    /// The contacts' memories are of one way to step alone.
+    /// Clears the contacts' memories if the stepper changes, because they belong to one stepper.
     fn become_of(&mut self, stepper: Option<Stepper>) {
         if self.last_stepper != stepper {
             self.state.contacts.forget();
@@ -179,7 +179,7 @@ impl Simulation {
         }
     }
 
-    /// Takes a step in so many pieces of equal length.
+    /// Takes a step in `pieces` pieces of equal length.
     fn take_step_of<M: Slotted>(&mut self, pieces: u32, advance: &mut impl Advance) {
         let Self {
             state, settings, slots, observables, initial_heights, last_stepper, watch, ..
@@ -197,7 +197,7 @@ impl Simulation {
             result.measures.measure_as_a_model();
         }
         let time_step_secs = settings.parameters.time_step_secs;
-        // A scheme solves nothing that its residual could say is not solved.
+        // A stepper without a solver has no tolerance that its residual could miss.
         let is_solved = last_stepper.is_none_or(Stepper::uses_method);
         result.report.converged &= !is_solved || result.measures.residual.is_finite();
         *observables =
@@ -208,10 +208,10 @@ impl Simulation {
     }
 
     fn look(&mut self) -> Result<&Observables> {
-        // Speeds whose squares no number holds are as good as none: nothing is told of what they do.
+        // Speeds whose squares overflow count as not finite: nothing is measured of such a state.
         let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
         let Self { state, settings, watch, observables, .. } = self;
-        // Springs of `dem` give back the energy that they took, and works of `avbd` do not balance its energy.
+        // Springs of `dem` return stored energy, and the works of `avbd` do not balance its energy.
         let is_balanced = |stepper| !matches!(stepper, Stepper::Dem | Stepper::Avbd);
         if finite && self.last_stepper.is_some_and(is_balanced) {
             watch.count_work(state, settings, observables);
@@ -235,7 +235,7 @@ impl Simulation {
         })
     }
 
-    /// Finds the contacts of the present places, and measures them as those of a start.
+    /// Finds the contacts of the present positions, and measures the state as an initial state.
     pub(super) fn observe_start(&mut self) {
         let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
         with_model!(state.leanest_model(&settings.parameters), M => {
@@ -244,15 +244,16 @@ impl Simulation {
         });
     }
 
-    /// Shows the first problem of the next step, as its method would get it, to `visitor`: that of the
-    /// first piece where the step is cut, with its shocks passed where they are solved apart. This
-    /// simulation stays as it is.
+    /// Passes the first problem of the next step to `visitor`, as the solver would receive it: the problem of the
+    /// first piece if the step is divided, after its shocks if they are solved separately. This simulation does not
+    /// change.
     pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
         let (parts, mut slots, contacts) = self.prepared();
         with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
     }
 
-    /// That problem, in the slot of its model, and its contacts. Not generic, so that it is compiled in this crate alone.
+    /// The problem in the slot of its model, and its contacts. Not generic, so that it is compiled only in this
+    /// crate.
     fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
         let parts = state.leanest_model(&settings.parameters);
@@ -265,7 +266,7 @@ impl Simulation {
         (parts, slots, state.contacts)
     }
 
-    /// The world as it is now.
+    /// The present world.
     pub fn world(&self) -> &World {
         &self.state.world
     }
@@ -280,7 +281,7 @@ impl Simulation {
         self.state.physics
     }
 
-    /// How the next step is taken.
+    /// The settings of the next step.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -290,7 +291,7 @@ impl Simulation {
         &self.settings.parameters
     }
 
-    /// How well the next step is solved.
+    /// The solver settings of the next step.
     pub fn solver(&self) -> &SolverSettings {
         &self.settings.solver
     }
@@ -298,7 +299,7 @@ impl Simulation {
     /// Changes the settings from the next step on.
     ///
     /// # Errors
-    /// Names the first one outside its range, or that does not go with the others, and changes none.
+    /// Names the first setting outside its range or incompatible with others, and changes none.
     pub fn change(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
         settings.check_in(&self.state.world, self.state.physics)?;
@@ -313,37 +314,37 @@ impl Simulation {
     /// Changes the parameters from the next step on.
     ///
     /// # Errors
-    /// As [`Self::change`].
+    /// Same as [`Self::change`].
     pub fn set_parameters(&mut self, parameters: Parameters) -> Result<()> {
         self.change(Settings { parameters, ..self.settings })
     }
 
-    /// Changes how well steps are solved, from the next one on.
+    /// Changes the solver settings from the next step on.
     ///
     /// # Errors
-    /// As [`Simulation::change`].
+    /// Same as [`Simulation::change`].
     pub fn set_solver(&mut self, solver: SolverSettings) -> Result<()> {
         self.change(Settings { solver, ..self.settings })
     }
 
-    /// The spring that acts on a grain in the next step, if there is one.
+    /// The spring that pulls a grain in the next step, if there is one.
     pub fn pull(&self) -> Option<Pull> {
         self.state.pull
     }
 
-    /// Ties a spring to a grain from the next step on, or takes it away. A spring to a grain that
-    /// does not exist is none.
+    /// Attaches a spring to a grain from the next step on, or removes it. A spring to a grain that does not exist is
+    /// ignored.
     pub fn set_pull(&mut self, pull: Option<Pull>) {
         let exists = |pull: &Pull| (pull.grain as usize) < self.state.world.grains.len();
         self.state.pull = pull.filter(|pull| exists(pull) && pull.target.is_finite());
     }
 
-    /// What the last step measured; before the first step, the initial state.
+    /// Measurements of the last step; before the first step, of the initial state.
     pub fn observables(&self) -> &Observables {
         &self.observables
     }
 
-    /// What went wrong so far, one alarm of a kind.
+    /// Alarms so far, at most one of each kind.
     pub fn alarms(&self) -> &[Alarm] {
         &self.watch.alarms
     }
@@ -353,19 +354,19 @@ impl Simulation {
         self.watch.of_placed(&self.observables, &self.settings)
     }
 
-    /// Forgets what went wrong, for a run that goes on in another way: each kind of alarm is raised once. Grains that are
-    /// lost stay so.
+    /// Clears the alarms, for a run that continues with other settings, because each kind is raised only once. Lost
+    /// grains stay lost.
     pub fn forget_alarms(&mut self) {
         let stays = [AlarmKind::GrainLost, AlarmKind::GrainLeft];
         self.watch.alarms.retain(|alarm| stays.contains(&alarm.kind));
     }
 
-    /// The step whose end is nearest to a simulated time (s), as long as Δt stays as it is.
+    /// The step whose end is nearest to a simulated time (s), if Δt does not change.
     pub fn step_at(&self, secs: f64) -> u64 {
         self.steady.step_at(secs, &self.settings.parameters)
     }
 
-    /// True where a grain went through a wall or left the world.
+    /// True if a grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
         self.watch.losses.lost[grain]
     }
@@ -376,7 +377,7 @@ impl Simulation {
     }
 }
 
-/// The moment since which Δt has been what it is.
+/// The moment of the last change of Δt.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Steady {
@@ -396,11 +397,11 @@ impl Steady {
     }
 }
 
-/// Something to be done with a step's problem, before it is solved.
+/// Visitor of a step's problem before the problem is solved.
 pub trait ProblemVisitor {
-    /// What it gives.
+    /// Result of the visit.
     type Output;
-    /// Does it; row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
+    /// Visits the problem; row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> Self::Output;
 }
 
@@ -417,7 +418,8 @@ impl<'de> Deserialize<'de> for Simulation {
 }
 
 impl Simulation {
-    /// One that was read, once its parts are found to go together: none of them is looked for later on.
+    /// Completes a simulation read from a file after checking that its parts are compatible, because nothing checks
+    /// them later.
     fn complete(mut self) -> Result<Self> {
         self.settings.validate()?;
         self.state.physics.validate()?;
@@ -455,7 +457,7 @@ mod tests {
     use crate::scene::built_in;
     use crate::sim::Stepper;
 
-    /// A clock that goes on by one each time it is looked at.
+    /// A clock that advances by one with each reading.
     fn looks() -> f64 {
         static LOOKS: AtomicU32 = AtomicU32::new(0);
         f64::from(LOOKS.fetch_add(1, Ordering::Relaxed))

@@ -1,4 +1,4 @@
-//! One moment of a run, as pictures and windows need it. Plain data: it outlives the simulation.
+//! The state at one moment, for pictures and windows. Plain data that outlives the simulation.
 
 use std::sync::Arc;
 
@@ -13,22 +13,22 @@ use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
 use crate::world::Periodic;
 
-/// One moment of a run.
+/// The state at one moment, for pictures.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
-    /// What the last step measured.
+    /// Measurements of the last step.
     pub observables: Observables,
     /// The moving discs.
     pub grains: Vec<GrainView>,
     /// The contacts of the last step.
     pub contacts: Vec<ContactView>,
-    /// What no grain moves.
+    /// Boundaries and fixed discs.
     pub surroundings: Arc<Surroundings>,
 }
 
 impl Snapshot {
-    /// Tells states apart: a hash of where all grains are and how they move, bit by bit.
+    /// A hash of the positions and motions of all grains, bit by bit, which distinguishes states.
     pub fn state_hash(&self) -> String {
         hash_of_bits(self.grains.iter().flat_map(|grain| {
             let GrainView { position, velocity, angle, angular_velocity, .. } = *grain;
@@ -54,19 +54,19 @@ pub struct GrainView {
     pub position: DVec2,
     /// Radius, m.
     pub radius: f64,
-    /// Angle turned, rad.
+    /// Rotation angle, rad.
     pub angle: f64,
     /// Velocity of the centre, m/s.
     pub velocity: DVec2,
     /// Angular velocity, rad/s.
     pub angular_velocity: f64,
-    /// Largest overlap over its contacts, m; 0 without one.
+    /// Largest overlap over its contacts, m; 0 without contacts.
     pub overlap: f64,
     /// Σ|N| over its contacts, N.
     pub force: f64,
     /// Number of its contacts.
     pub coordination: u32,
-    /// Grey that the scene gives it: 0 black … 255 white.
+    /// Grey from the scene: 0 is black, 255 white.
     pub tone: u8,
 }
 
@@ -76,22 +76,22 @@ pub struct GrainView {
 pub struct ContactView {
     /// Index of grain i.
     pub grain: u32,
-    /// Index of grain j, or none against a fixed shape.
+    /// Index of grain j; `None` for a fixed shape.
     pub other_grain: Option<u32>,
     /// Centre of grain i, m.
     pub from: DVec2,
     /// Centre of the other disc, or the touched point of another fixed shape, m.
     pub to: DVec2,
-    /// N, newton; negative pulls.
+    /// Normal force N, newton; negative pulls.
     pub normal_force: f64,
-    /// T, newton.
+    /// Tangential force T, newton.
     pub tangential_force: f64,
-    /// Gap when the contact was found, m; negative is overlap.
+    /// Gap when the contact was found, m; negative for an overlap.
     pub gap: f64,
 }
 
 impl Simulation {
-    /// This moment, for pictures.
+    /// The present state, for pictures.
     pub fn snapshot(&self) -> Snapshot {
         let (grains, numbering) = (&self.state.world.grains, Numbering::of(&self.state.world));
         let mut views: Vec<GrainView> = (0..grains.len())
@@ -138,7 +138,7 @@ impl Simulation {
         }
     }
 
-    /// What no grain moves, where it is now.
+    /// Boundaries and fixed discs at their present places.
     pub(super) fn surroundings(&self) -> Arc<Surroundings> {
         let world = &self.state.world;
         if !world.has_motion() && !world.periodic.is_some_and(Periodic::is_sheared) {
@@ -147,7 +147,7 @@ impl Simulation {
         Arc::new(Surroundings::of(world, self.parameters().time_step_secs))
     }
 
-    /// Centre of another disc, or the nearest point of another shape, m: of the nearest image of either.
+    /// Centre of the other disc, or the nearest point of another shape, m, for the nearest image.
     fn far_end(&self, grain: usize, other: Other) -> DVec2 {
         let State { world, candidates, .. } = &self.state;
         let centre = world.grains.positions[grain];

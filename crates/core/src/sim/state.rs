@@ -1,4 +1,5 @@
-//! What a step reads and moves, and what every way to step does with it: find contacts, move grains.
+//! The state that a step reads and changes, and the operations common to all steppers: detection of contacts and
+//! motion of grains.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -12,8 +13,8 @@ use crate::sim::walls::Walls;
 use crate::solver::{Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
 
-/// Skin of the candidate search, in units of d. Smaller: the list is built more often; larger: more
-/// pairs are looked at in vain. Does not change any result.
+/// Skin of the candidate search, in units of d. If smaller, the list is rebuilt more often; if larger, more pairs are
+/// examined in vain. It does not change any result.
 const SKIN_IN_DIAMETERS: f64 = 0.2;
 
 /// A world with the contacts of its last step.
@@ -24,35 +25,35 @@ pub(crate) struct State {
     pub physics: Physics,
     pub candidates: Candidates,
     pub contacts: ContactList,
-    /// Walls that move. Each step begins with finding them.
+    /// Moving walls. Each step begins by finding them.
     #[serde(skip)]
     pub walls: Walls,
-    /// A spring on one grain, from the next step on.
+    /// Spring on one grain, from the next step on.
     pub pull: Option<Pull>,
-    /// A force on each grain beside gravity, N; empty where there is none.
+    /// Force on each grain in addition to gravity, N; empty if there is none.
     pub body_forces: Vec<DVec2>,
-    /// True where a hand holds a wall: then the last motion is its own.
+    /// True if the user drags a wall. The last motion is then this drag.
     pub is_held: bool,
     /// Δt of the impulses in `contacts`, s.
     pub time_step_of_impulses_secs: f64,
-    /// Runs while a step is timed.
+    /// Measures while a step is timed.
     #[serde(skip)]
     pub stopwatch: Stopwatch,
 }
 
 impl State {
-    /// The model that computes what there is, and no more.
+    /// The smallest model that computes all physics of the state.
     pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
         ModelParts::leanest(self.physics, self.world.periodic, parameters)
     }
 
-    /// The number of substeps that the stepper takes in a step.
+    /// The number of substeps that the stepper takes per step.
     pub(crate) fn substeps(&self, settings: &Settings) -> u32 {
         (settings.stepper.info().substeps)(&self.world, self.physics, &settings.parameters)
     }
 
-    /// Begins a step of that length: the contacts' forces stay what they were, walls get their speeds, and gravity its
-    /// direction.
+    /// Begins a step of length `time_step_secs`: rescales impulses so that the contacts' forces stay the same, and
+    /// sets the speeds of walls and the direction of gravity.
     pub(crate) fn begin(&mut self, time_step_secs: f64) {
         let before = self.time_step_of_impulses_secs;
         if time_step_secs != before {
@@ -65,8 +66,8 @@ impl State {
         self.walls.begin(&self.world, &self.candidates, time_step_secs);
     }
 
-    /// Finds the contacts: those at the present positions, or, looking ahead, those that the step may
-    /// come to as well.
+    /// Finds the contacts at the present positions and, with a look-ahead, also the pairs that may touch within the
+    /// step.
     pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
         let begun = self.stopwatch.now();
         match M::AXES {
@@ -98,23 +99,23 @@ impl State {
         self.fastest_with(self.walls.fastest(&self.world, &self.candidates))
     }
 
-    /// Speed of the fastest grain or wall in the next step, if that is of such a length, m/s.
+    /// Speed of the fastest grain or wall in the next step, if it has this length, m/s.
     pub(crate) fn fastest_in(&self, time_step_secs: f64) -> f64 {
         self.fastest_with(Walls::fastest_in(&self.world, &self.candidates, time_step_secs))
     }
 
-    /// Of what images beyond a border have besides, each of two grains that meet sees half.
+    /// Each of two grains that meet accounts for half of the relative speed of images beyond a border.
     fn fastest_with(&self, fastest_wall: f64) -> f64 {
         let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
         speeds.fold(fastest_wall, f64::max) + 0.5 * self.speed_of_border()
     }
 
-    /// How fast images beyond a border that shears go beside their grains, m/s.
+    /// Speed of images beyond a sheared border relative to their grains, m/s.
     fn speed_of_border(&self) -> f64 {
         self.world.periodic.map_or(0.0, |periodic| periodic.border_speed().abs())
     }
 
-    /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
+    /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and likewise the angles if grains turn.
     pub(crate) fn integrate<M: Model>(&mut self, time_step_secs: f64) {
         let grains = &mut self.world.grains;
         for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
@@ -124,7 +125,7 @@ impl State {
                 *position += time_step_secs * *velocity;
             }
         }
-        // Grains go on turning where friction is switched off for the moment.
+        // Grains keep turning while friction is temporarily off.
         if self.physics.rotation {
             for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
                 *angle += time_step_secs * spin;
@@ -142,7 +143,7 @@ impl State {
         }
     }
 
-    /// What pushes grains from outside in the next `secs`: a spring, and body forces.
+    /// External pushes on grains in the next `secs`: a spring, and body forces.
     pub(super) fn pushes(&self, axes: usize, secs: f64) -> Vec<Push> {
         let masses = &self.world.grains.masses;
         let spring = self.pull.and_then(|pull| pull.push(&self.world, axes, secs));
@@ -152,25 +153,25 @@ impl State {
         spring.into_iter().chain(forces).collect()
     }
 
-    /// The largest acceleration of a grain by gravity and body forces, m/s²: the next step looks for contacts as far as that
-    /// may lead.
+    /// The largest acceleration of a grain by gravity and body forces, m/s². It determines the search distance of the
+    /// next step.
     pub(super) fn largest_acceleration(&self) -> f64 {
         let forces = self.body_forces.iter().zip(&self.world.grains.masses);
         let largest = forces.map(|(force, mass)| force.length() / mass).fold(0.0, f64::max);
         self.world.gravity.magnitude() + largest
     }
 
-    /// True where all positions and velocities are numbers.
+    /// True if all positions and velocities are finite.
     pub(crate) fn is_finite(&self) -> bool {
         let grains = &self.world.grains;
-        // A sum is finite only where every term is (or where an overflow is close enough to count).
+        // A sum is finite only if every term is (an overflow near enough counts as well).
         let total = |vectors: &[DVec2]| vectors.iter().sum::<DVec2>().is_finite();
         total(&grains.positions)
             && total(&grains.velocities)
             && grains.angular_velocities.iter().sum::<f64>().is_finite()
     }
 
-    /// Takes a grain out. The impulses of all other contacts stay.
+    /// Removes a grain. The impulses of all other contacts stay.
     pub(crate) fn remove_grain(&mut self, grain: usize) -> Result<()> {
         let number = grain as u32;
         self.world.grains.remove(grain);
@@ -186,7 +187,7 @@ impl State {
         Ok(())
     }
 
-    /// Goes on with a world that has a grain more, the last of them.
+    /// Replaces the world by one with one more grain, which is the last.
     pub(crate) fn add_last_grain(&mut self, world: World) -> Result<()> {
         let number = world.grains.len() as u32 - 1;
         self.world = world;
@@ -197,7 +198,7 @@ impl State {
         self.look_anew()
     }
 
-    /// Looks for candidates as if there had been none.
+    /// Restarts the candidate search.
     pub(crate) fn look_anew(&mut self) -> Result<()> {
         let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
         let gap_tolerance = self.candidates.gap_tolerance();
@@ -206,11 +207,11 @@ impl State {
     }
 }
 
-/// The diameter that lengths are measured in is at most this many radii of the largest grain: the
-/// skin goes with it, and all that lie within the skin are candidates.
+/// Largest mean diameter, in radii of the largest grain. The skin is proportional to the mean diameter, and all discs
+/// within the skin are candidates.
 const MOST_RADII_OF_DIAMETER: f64 = 200.0;
 
-/// How far a world's candidate search looks, where its lengths leave each disc few others to touch.
+/// Reach of a world's candidate search, if its lengths leave each disc few others to touch.
 pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
     let diameter = world.mean_diameter;
     if !(diameter > 0.0 && diameter.is_finite()) {
@@ -222,7 +223,7 @@ pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
         return Err(Error::value("mean_diameter", diameter, allowed));
     }
     let skin = SKIN_IN_DIAMETERS * diameter;
-    // Of much smaller discs, all within the tolerance would touch.
+    // With much smaller discs, all discs within the tolerance would touch.
     let least_radius = world.grains.radii.iter().copied().fold(f64::INFINITY, f64::min);
     let most = (0.1 * skin).min(least_radius);
     if !(0.0..most).contains(&gap_tolerance) {

@@ -1,17 +1,17 @@
-//! Where the time of a step goes.
+//! Computing time of a step's parts.
 
-/// What a step took, s.
+/// Computing time of a step, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepTimes {
-    /// Finding who may touch, and who does.
+    /// Detection: finding candidates and contacts.
     pub detection_secs: f64,
-    /// Solving the step's problems, shocks included; none of steppers whose substeps push by formula.
+    /// Solving the step's problems, including shocks; 0 for steppers whose substeps push by a formula.
     pub solving_secs: f64,
-    /// All of it: besides these two, setting up, moving, measuring.
+    /// Total, which also includes preparation, motion and measurement.
     pub total_secs: f64,
 }
 
-/// Adds up what parts of a step take, where there is a clock.
+/// Adds up the times of a step's parts if there is a clock.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stopwatch {
     pub clock: Option<fn() -> f64>,
@@ -19,7 +19,7 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// s since some moment; always the same without a clock.
+    /// Seconds since any moment; constant without a clock.
     pub(crate) fn now(&self) -> f64 {
         self.clock.map_or(0.0, |clock| clock())
     }

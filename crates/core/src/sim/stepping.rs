@@ -1,4 +1,4 @@
-//! What all ways to step share: the step's problem on its stage, the cut into pieces, the step's result.
+//! Common parts of all steppers: the stage with the step's problem, the division into pieces, and the step's result.
 
 use crate::contact::{ContactList, InTouch, LookAhead};
 use crate::sim::settings::Settings;
@@ -9,46 +9,47 @@ use crate::solver::{
 };
 use crate::world::World;
 
-/// What a step came to.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepResult {
-    /// How its problems were solved.
+    /// Report of the solves.
     pub report: SolveReport,
     /// Residual, contacts and works.
     pub measures: Measures,
     /// Work of gravity, body forces and a spring that pulls, J.
     pub gravity_work: f64,
-    /// Work of the forces that drive walls, less what their damping took, J.
+    /// Work of the forces that drive walls, minus the loss in the walls' damping, J.
     pub drive_work: f64,
-    /// Of a law with bonds.
+    /// Energies of bonds, under a law with bonds.
     pub bonds: Option<BondEnergies>,
-    /// Bonds that ended because their pairs turned, where a bond lives while its gap is below zero.
+    /// Number of bonds that ended because their pairs turned, under laws whose bonds exist while their gap is
+    /// negative.
     pub turned_bonds: u64,
 }
 
-/// What bonds took and gave, J.
+/// Energies absorbed and released by bonds, J.
 ///
-/// A bond that is opened by s has taken C₀ s. It gives that back where it closes, and keeps it where
-/// it breaks. So its work is −Δ(C₀ s), and that of its last step −C₀ (opening) until then, with the
-/// impulse b m_ij of the time that it lived: −b m_ij ½(v⁺ + v^n), which leaves C₀δ_c in all. What a
-/// contact does beyond that is the work of the grains' push on each other.
+/// A bond that is opened by s has absorbed C₀ s. It releases this when it closes, and dissipates it when it breaks.
+/// So its work is −Δ(C₀ s). In its last step it is −C₀ times the opening until the break, and with the impulse b m_ij
+/// of the time until then it is −b m_ij ½(v⁺ + v^n), which gives C₀δ_c in total. Any further work of a contact is the
+/// work of the grains pushing each other.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BondEnergies {
-    /// Work of this step.
+    /// Work in this step.
     pub work: f64,
-    /// Σ C₀ s of the bonds that live.
+    /// Σ C₀ s of the existing bonds.
     pub stored: f64,
-    /// What the bonds took that broke in this step.
+    /// Energy dissipated by the bonds that broke in this step.
     pub broken: f64,
 }
 
 impl StepResult {
-    /// Of a step in which nothing has happened yet.
+    /// Result of a step before anything has happened.
     pub fn nothing_yet() -> Self {
         Self { report: SolveReport::nothing_yet(), ..Self::default() }
     }
 
-    /// Counts another piece of the step; what it measures at its end counts for the whole.
+    /// Adds another piece of the step. Its final measurements become those of the whole step.
     pub fn add(&mut self, piece: Self) {
         let Self { report, measures, gravity_work, drive_work, bonds, turned_bonds } = piece;
         self.report.add(report);
@@ -65,14 +66,13 @@ impl StepResult {
     }
 }
 
-/// A way to step: one of the registry, or one of your own
-/// ([`Simulation::step_by`](crate::sim::Simulation::step_by)).
+/// A stepper: one of the registry, or your own ([`Simulation::step_by`](crate::sim::Simulation::step_by)).
 pub trait Advance {
-    /// Takes the state through a step of `settings.parameters.time_step_secs`, and tells what came of it.
+    /// Takes the state through a step of `settings.parameters.time_step_secs`, and returns the result.
     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult;
 }
 
-/// What a way to step works on. The usual course is [`Stage::prepare`], [`Stage::solve`], [`Stage::move_by`].
+/// Everything a stepper works on. The usual sequence is [`Stage::prepare`], [`Stage::solve`], [`Stage::move_by`].
 #[derive(Debug)]
 pub struct Stage<'a, M: Model> {
     pub(crate) state: &'a mut State,
@@ -87,27 +87,27 @@ impl<'a, M: Model> Stage<'a, M> {
         Self { state, problem, part, memory }
     }
 
-    /// The world as it is now.
+    /// The present world.
     pub fn world(&self) -> &World {
         &self.state.world
     }
 
-    /// The step's contact problem, once it is prepared.
+    /// The step's contact problem, after it has been prepared.
     pub fn problem(&self) -> &StepProblem<M> {
         self.problem
     }
 
-    /// The same for a method of your own, whose impulses move the bodies ([`BodySystem::new`]).
+    /// The step's contact problem for your own solver, whose impulses move the bodies ([`BodySystem::new`]).
     pub fn system(&mut self) -> BodySystem<'_, M> {
         BodySystem::new(self.problem)
     }
 
-    /// The contacts of the step; row k of the problem is contact `problem.rows.contacts[k]` of them.
+    /// The contacts of the step. Row k of the problem is contact `problem.rows.contacts[k]` of this list.
     pub fn contacts(&self) -> &ContactList {
         &self.state.contacts
     }
 
-    /// Begins a step and sets up its problem with the contacts that touch. `rebound` is what the law adds
+    /// Begins a step and sets up its problem with the touching contacts. `rebound` returns the term that the law adds
     /// to v_n of a contact, m/s.
     pub fn prepare(
         &mut self,
@@ -117,8 +117,8 @@ impl<'a, M: Model> Stage<'a, M> {
         self.prepare_ahead(settings, |_| None, rebound);
     }
 
-    /// The same for a law of finite range that goes by the gap: the contacts are the pairs that are no farther apart than
-    /// `range` (m) as the step begins, and all of them pull.
+    /// Like [`prepare`](Self::prepare), for a law of finite range that depends on the gap: the contacts are the pairs
+    /// with gaps up to `range` (m) as the step begins, and all of them pull.
     pub fn prepare_within(
         &mut self,
         settings: &Settings,
@@ -133,8 +133,8 @@ impl<'a, M: Model> Stage<'a, M> {
         self.problem.rows.captures.clear();
     }
 
-    /// The same with the contacts that the step may come to as well, as far as `look_ahead` says of a step
-    /// that has begun.
+    /// Like [`prepare`](Self::prepare), with the contacts that may form within the step, as determined by
+    /// `look_ahead` once the step has begun.
     pub(crate) fn prepare_ahead(
         &mut self,
         settings: &Settings,
@@ -172,12 +172,12 @@ impl<'a, M: Model> Stage<'a, M> {
         }
     }
 
-    /// Solves the prepared problem by the method of the settings.
+    /// Solves the prepared problem with the solver of the settings.
     pub fn solve(&mut self, settings: &Settings) -> SolveReport {
         self.timed(|stage| solve(stage.problem, stage.memory, &settings.solver))
     }
 
-    /// Does what is part of solving.
+    /// Runs `solving` and counts its time as solving time.
     pub(super) fn timed<T>(&mut self, solving: impl FnOnce(&mut Self) -> T) -> T {
         let begun = self.state.stopwatch.now();
         let outcome = solving(self);
@@ -186,7 +186,7 @@ impl<'a, M: Model> Stage<'a, M> {
         outcome
     }
 
-    /// Moves the grains by the solution of the problem, for Δt.
+    /// Moves the grains for Δt with the solution of the problem.
     pub fn move_by(&mut self, report: SolveReport, settings: &Settings) -> StepResult {
         let Self { state, problem, .. } = self;
         let measures = measure(problem);
@@ -203,9 +203,9 @@ impl<'a, M: Model> Stage<'a, M> {
         StepResult { report, measures, gravity_work, drive_work, ..StepResult::nothing_yet() }
     }
 
-    /// Cuts a step into pieces of equal length and takes them one after the other: `piece` gets the
-    /// settings of a piece and adds what came of it to the result of the whole. A state that is no longer
-    /// finite ends it early.
+    /// Divides a step into pieces of equal length and takes them one after the other. `piece` receives the settings
+    /// of a piece and adds its result to that of the whole step. A state that is no longer finite ends the step
+    /// early.
     pub fn in_pieces(
         &mut self,
         count: u32,

@@ -1,4 +1,4 @@
-//! The bodies that no grain moves, at one moment, as pictures and windows need them.
+//! Boundaries and fixed discs at one moment, for pictures and windows.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -13,48 +13,48 @@ pub struct Surroundings {
     pub fixed_discs: Vec<Disc>,
     /// Other fixed shapes.
     pub boundaries: Vec<Boundary>,
-    /// The centre of attraction, where the scene has one, m.
+    /// The centre of attraction, m, if the scene has one.
     pub centre_of_attraction: Option<DVec2>,
-    /// Borders that wrap, if there are any.
+    /// Periodic borders, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// The diameter d that lengths are measured in, m.
+    /// The diameter d, the unit of length for relative quantities, m.
     pub mean_diameter: f64,
     /// The scene's g, m/s².
     pub gravity_magnitude: f64,
-    /// How some of them go.
+    /// Motions of some of these bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<MotionView>,
 }
 
-/// How bodies go at one moment that no grain moves, or what drives them.
+/// Motion or drive of boundaries and fixed discs at one moment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionView {
-    /// The boundaries, by their numbers.
+    /// Indices of the boundaries.
     pub boundaries: Vec<usize>,
-    /// The fixed discs, by their numbers.
+    /// Indices of the fixed discs.
     pub fixed_discs: Vec<usize>,
-    /// m/s; none of what turns.
+    /// Velocity, m/s; zero if the bodies turn.
     pub velocity: DVec2,
-    /// rad/s, positive anticlockwise.
+    /// Angular velocity, rad/s, positive anticlockwise.
     pub angular_velocity: f64,
-    /// By how much it has turned since the start, rad.
+    /// Rotation since the start, rad.
     #[serde(default)]
     pub turned: f64,
-    /// What it turns round, m.
+    /// Pivot, m.
     pub pivot: DVec2,
-    /// Of a surface that goes round it, m/s, along the outward normal turned by +90°.
+    /// Speed of the surface along itself, m/s, along the outward normal turned by +90°.
     pub surface_speed: f64,
-    /// True where a force drives it, be it none for the moment.
+    /// True if a force drives the bodies, even if it is zero at the moment.
     #[serde(default)]
     pub is_driven: bool,
-    /// That force, N.
+    /// Driving force, N.
     pub force: DVec2,
 }
 
 impl MotionView {
-    /// All of a world, in a step of that length.
+    /// All motions of a world, in a step of length `time_step_secs`.
     fn all(world: &World, time_step_secs: f64) -> Vec<Self> {
         let by_themselves = world.boundaries.iter().enumerate().filter_map(|(index, boundary)| {
             let velocity = boundary.velocity_in(time_step_secs)?.velocity;
@@ -80,14 +80,14 @@ impl MotionView {
         by_themselves.chain(by_motions).collect()
     }
 
-    /// The velocity of a point of it, m/s.
+    /// The velocity of a point of the bodies, m/s.
     pub fn velocity_at(&self, place: DVec2) -> DVec2 {
         self.velocity + self.angular_velocity * (place - self.pivot).perp()
     }
 }
 
 impl Surroundings {
-    /// Those of a world as it is now, and as it goes on in a step of that length.
+    /// The present surroundings of a world, with velocities for a step of length `time_step_secs`.
     pub(super) fn of(world: &World, time_step_secs: f64) -> Self {
         Self {
             fixed_discs: world.fixed_discs.clone(),

@@ -1,17 +1,17 @@
 //! Bonds that end because their pair turns, and not because of the pull on them.
 //!
-//! A step takes normals from its beginning, and grains go straight. Let two grains with v_n = 0 circle each other with
-//! ω, their centres L apart. At the end of the step they are L √(1 + ω²Δt²) apart: the gap has grown by ½ω²Δt²·L. If a
-//! bond lives while the gap is below zero, turning ends it after some steps, though it could bear far more than the
-//! pull.
+//! A step takes normals from its beginning, and grains move straight. Let two grains with v_n = 0 circle each other
+//! with ω, their centres L apart. At the end of the step they are L √(1 + ω²Δt²) apart: the gap has grown by
+//! ½ω²Δt²·L. If a bond exists while the gap is negative, turning ends it after some steps, although it could bear a
+//! much larger pull.
 //!
-//! A bond counts as ended so if all of this is true of a contact of the step:
+//! A bond is counted if all of this is true of a contact of the step:
 //!
-//! * it pulled, by less than C₀, so its law asked for v̄_n = 0;
+//! * it pulled, by less than C₀, so its law required v̄_n = 0;
 //! * its normal velocity would not have opened it: gap + Δt·v_n is below the touch tolerance;
 //! * after the step its gap is not below the touch tolerance.
 //!
-//! Without cohesion nothing pulls, and nothing counts.
+//! Without cohesion nothing pulls, and nothing is counted.
 
 use crate::contact::Contact;
 use crate::sim::settings::Settings;
@@ -20,7 +20,7 @@ use crate::sim::stepping::Stage;
 use crate::sim::touch_tolerance::touch_tolerance;
 use crate::solver::{Model, for_each_row};
 
-/// Counts the bonds that ended so in a solved step, once the grains have moved.
+/// Counts the bonds that ended this way in a solved step, after the grains have moved.
 pub(super) fn count<M: Model>(stage: &Stage<'_, M>, settings: &Settings) -> u64 {
     let Stage { state, problem, .. } = stage;
     let tolerance = touch_tolerance(state, settings).max(state.candidates.gap_tolerance());
@@ -40,13 +40,13 @@ pub(super) fn count<M: Model>(stage: &Stage<'_, M>, settings: &Settings) -> u64 
     ended
 }
 
-/// True where a contact pulls, by less than its cohesion. Impulses and capture speed are in m/s.
+/// True if a contact pulls by less than its cohesion. Impulses and capture speed are in m/s.
 pub(super) fn is_within_bounds(reduced_impulse: f64, capture_speed: f64) -> bool {
     reduced_impulse < 0.0 && reduced_impulse > -capture_speed
 }
 
-/// True where the gap of a pair is not below the touch tolerance (m), though the pair's normal velocities led to a gap
-/// (`expected`, m) that is.
+/// True if the gap of a pair is not below the touch tolerance (m), although the gap predicted from its normal
+/// velocities (`expected`, m) is.
 pub(super) fn is_open_against(
     state: &State,
     contact: &Contact,

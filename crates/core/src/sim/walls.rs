@@ -1,34 +1,35 @@
-//! Bodies that move by themselves (`world::motion`, and pistons).
+//! Moving walls: boundaries and fixed discs with a motion (`world::motion`), and pistons.
 //!
-//! In a step each has one rigid velocity: the mean of its course over Δt, or in its last step what is left of its
-//! way over Δt. One that a force drives begins with the speed that it has, and its step says with which it goes on
-//! (`solver::problem::walls`). The contacts see it where they touch, and with the grains the body is
-//! carried by it.
+//! In a step each has one rigid velocity: the mean of its course over Δt, or in its last step the remaining travel
+//! divided by Δt. A body driven by a force begins with its present speed, and the step computes its new speed
+//! (`solver::problem::walls`). Contacts use this velocity at the touched point, and the body moves with it together
+//! with the grains.
 //!
 //! **Walls that turn.** With R the rotation of a step by α = ωΔt about p, the point of the wall at c has the mean
-//! velocity V(c) = (R − 1)(c − p)/Δt, of which −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent t
-//! from its beginning, but the normal turns with the wall. Let c be the centre of a disc that slides with u along a
+//! velocity V(c) = (R − 1)(c − p)/Δt, of which −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent
+//! t from its beginning, but the normal turns with the wall. Let c be the centre of a disc that slides with u along a
 //! flat wall. The gap grows by Δt cos α (v_n − V_n) with
 //!
 //! > V_n = n·V(c) − u tan α,  V_t = t·V(c) − rω.
 //!
-//! A disc that sticks (v_t = V_t, spin ω) thus goes as the wall does, and its gap stays, whatever Δt is. The point of
-//! the wall that the disc touches would not do as c: the gap of a disc that sticks would grow by ½ω²Δt·r per second.
-//! The code has sin α in the place of tan α, which differs from it by α³/2.
+//! So a disc that sticks (v_t = V_t, spin ω) moves with the wall, and its gap stays constant, whatever Δt is. The
+//! touched point of the wall would not be suitable as c: the gap of a disc that sticks would grow by ½ω²Δt·r per
+//! second. The code uses sin α instead of tan α, which differs by α³/2.
 //!
-//! Round a fixed disc with centre q the normal turns with the grain:
+//! Around a fixed disc with centre q the normal turns with the grain:
 //!
 //! > V_n = n·V(c) − u tan ½α.
 //!
-//! This is the velocity of q along n where the grain stays at its place. In between the error is the one of a disc that
-//! does not turn, whose normals stay those of the beginning of the step. A surface speed leads the grain round, too:
-//! with ρ the radius of the disc, L = |c − q| and β = (ω + surface speed/ρ)Δt, and w = u + L sin α/Δt relative to q,
+//! This is the velocity of q along n if the grain stays at its place. Otherwise the error is that of a disc that does
+//! not turn, whose normals stay those of the beginning of the step. A surface speed also moves the grain around the
+//! disc. With ρ the radius of the disc, L = |c − q| and β = (ω + surface speed/ρ)Δt, and w = u + L sin α/Δt relative
+//! to q,
 //!
 //! > V_n = n·V(q) − w tan ½β = n·V(c) − u tan ½β − (tan ½β − tan ½α) L sin α/Δt.
 //!
-//! u is the one with which the step begins. A grain at rest relative to the wall has had the mean velocity V⁻ of the
-//! step before, with (1 − R⁻¹)/Δt in the place of (R − 1)/Δt, so u is counted from that. Along n it has had n·V⁻(c) and
-//! the other terms with + in the place of −, which restitution and shocks are counted from.
+//! u is the value at the beginning of the step. A grain at rest relative to the wall has had the mean velocity V⁻ of
+//! the step before, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to that velocity. Along n the grain has
+//! had n·V⁻(c) and the other terms with + instead of −. Restitution and shocks are relative to this velocity.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -38,10 +39,10 @@ use crate::contact::{Candidates, Contact, Numbering, Other};
 use crate::solver::{DrivenBy, DrivenWall, Surface};
 use crate::world::{Boundary, Carry, RigidVelocity, World};
 
-/// No wall.
+/// Index of no wall.
 const NONE: u32 = u32::MAX;
 
-/// What moves in the present step. Memory is kept between steps.
+/// The moving bodies of the present step. Memory is kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
@@ -51,7 +52,7 @@ pub(crate) struct Walls {
     of_boundary: Vec<u32>,
     of_disc: Vec<u32>,
     of_feature: Vec<u32>,
-    /// Whether each feature is a half-space, and whether it goes along its normal and no other way.
+    /// For each feature: true if it is a half-space, and true if it moves only along its normal.
     shapes: Vec<(bool, bool)>,
 }
 
@@ -61,32 +62,32 @@ struct Wall {
     velocity: RigidVelocity,
     /// The velocity with which the step begins.
     before: RigidVelocity,
-    /// Along the tangent besides, m/s.
+    /// Additional speed along the tangent, m/s.
     surface_speed: f64,
     driver: Option<Driver>,
 }
 
-/// What a force drives of a wall.
+/// The drive of a wall by a force.
 #[derive(Clone, Copy, Debug)]
 struct Driver {
-    /// Its number among all of them.
+    /// Its index among all drives.
     number: u32,
     axis: DVec2,
-    /// The velocity that the wall has besides, m/s.
+    /// The additional velocity of the wall by its course, m/s.
     course: DVec2,
 }
 
-/// What says how a wall goes.
+/// Source of a wall's motion.
 #[derive(Clone, Copy, Debug)]
 enum Mover {
-    /// The boundary of that number itself.
+    /// The boundary with this index.
     Boundary(usize),
-    /// The motion of that number.
+    /// The motion with this index.
     Motion(usize),
 }
 
 impl Walls {
-    /// Begins a step of that length.
+    /// Begins a step of length `time_step_secs`.
     pub(crate) fn begin(&mut self, world: &World, candidates: &Candidates, time_step_secs: f64) {
         self.moving.clear();
         self.secs = time_step_secs;
@@ -151,12 +152,12 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Says that contacts are looked at in each of so many substeps.
+    /// Declares that contacts are detected in each of `substeps` substeps.
     pub(crate) fn divide(&mut self, substeps: u32) {
         self.secs /= f64::from(substeps);
     }
 
-    /// Speed of the fastest shape, m/s. Of a half-space that turns, that which it has at the farthest grain.
+    /// Speed of the fastest shape, m/s. For a turning half-space, its speed at the farthest grain.
     pub(crate) fn fastest(&self, world: &World, candidates: &Candidates) -> f64 {
         let turns = |number: u32| {
             self.moving.get(number as usize).map(|wall| wall.velocity).filter(|it| it.spin != 0.0)
@@ -184,13 +185,13 @@ impl Walls {
         of_discs.chain(of_features).fold(fastest, f64::max)
     }
 
-    /// How the surface of the other body of a contact goes, if that moves.
+    /// Motion of the surface of a contact's other body, if it moves.
     #[inline]
     pub(crate) fn surface(&self, world: &World, contact: &Contact) -> Option<Surface> {
         self.surface_at(world, contact, world.grains.positions[contact.grain as usize])
     }
 
-    /// The same of a contact whose grain was elsewhere, m.
+    /// Like [`surface`](Self::surface), for a contact whose grain was at another place, m.
     pub(crate) fn surface_at(
         &self,
         world: &World,
@@ -227,7 +228,7 @@ impl Walls {
         Some(Surface { velocity, before, round, is_half_space, is_pushed, driven })
     }
 
-    /// The walls that a force drives, as they begin a step of that length.
+    /// The walls driven by a force, at the beginning of a step of length `time_step_secs`.
     pub(crate) fn driven<'a>(
         &'a self,
         world: &'a World,
@@ -243,8 +244,8 @@ impl Walls {
         })
     }
 
-    /// Has the walls that a force drives go on as a step has found. Gives the work of the forces and of the damping, J:
-    /// Δt (F − cV) ½(V + V⁻), in which ΔtF = V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::walls`).
+    /// Stores the new speeds of driven walls after a step. Returns the work of the forces and of the damping, J:
+    /// Δt (F − cV) ½(V + V⁻), with ΔtF = V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::walls`).
     pub(crate) fn take_driven(&mut self, world: &mut World, driven: &[DrivenWall]) -> f64 {
         let mut work = 0.0;
         for found in driven {
@@ -264,14 +265,14 @@ impl Walls {
         work
     }
 
-    /// How fast the surface of the other body of a contact goes along n and t, m/s.
+    /// Velocity of the surface of a contact's other body along n and t, m/s.
     #[inline]
     pub(crate) fn velocity(&self, world: &World, contact: &Contact) -> [f64; 2] {
         let surface = self.surface(world, contact);
         surface.map_or([0.0; 2], |surface| surface.along(contact.normal))
     }
 
-    /// Moves the walls for `secs`, and all clocks on.
+    /// Moves the walls for `secs`, and advances all clocks.
     pub(crate) fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
         let carries: Vec<Carry> =
             self.moving.iter().map(|wall| wall.velocity.carry(secs)).collect();
@@ -302,7 +303,7 @@ impl Walls {
         candidates.follow(world, |boundary| of(&self.of_boundary, boundary), longest);
     }
 
-    /// Speed of the fastest wall in a next step of that length, m/s.
+    /// Speed of the fastest wall in the next step, if it has this length, m/s.
     pub(crate) fn fastest_in(world: &World, candidates: &Candidates, secs: f64) -> f64 {
         let mut walls = Self::default();
         walls.begin(world, candidates, secs);
@@ -316,13 +317,13 @@ struct TouchedPlace<'a> {
     radius: f64,
     velocity: DVec2,
     contact: &'a Contact,
-    /// The radius of the fixed disc that it touches, m; none of a boundary.
+    /// The radius of the fixed disc that it touches, m; `None` for a boundary.
     round_disc: Option<f64>,
 }
 
 impl Wall {
-    /// How fast the normal turns of a grain that is at rest relative to the surface, rad/s. With it goes the surface
-    /// speed where that leads round a fixed disc of a radius, m.
+    /// Rate at which the normal of a grain at rest relative to the surface turns, rad/s. It includes the surface
+    /// speed around a fixed disc of radius `round_disc`, m.
     fn spin_of_normal(&self, round_disc: Option<f64>) -> f64 {
         match round_disc {
             Some(radius) if self.surface_speed != 0.0 => {
@@ -332,7 +333,7 @@ impl Wall {
         }
     }
 
-    /// The velocities (m/s) of the surface where it turns: in the step, and as the step begins (see the module).
+    /// The velocities (m/s) of the surface if it turns: in the step, and at its beginning (see the module).
     fn velocities_at(&self, touching: &TouchedPlace<'_>, spin: f64, secs: f64) -> [DVec2; 2] {
         let TouchedPlace { centre, radius, velocity, contact, round_disc } = *touching;
         let (normal, tangent) = (contact.normal, contact.normal.perp());
@@ -355,7 +356,7 @@ impl Wall {
         [along(there, -turning, now.spin), along(there_before, turning, before.spin)]
     }
 
-    /// True where it moves a boundary along its normal and no other way.
+    /// True if it moves a boundary only along its normal.
     fn pushes(&self, world: &World, boundary: &Boundary) -> bool {
         self.surface_speed == 0.0
             && match self.mover {

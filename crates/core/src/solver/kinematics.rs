@@ -1,24 +1,23 @@
-//! How a body moves in a scene, and how a contact's two impulses move it.
+//! Motion of a body in a scene, and its response to the two impulses of a contact.
 //!
-//! The sweep works in **reduced impulses** λ = P/m_ij (m/s): the change of the contact's relative
-//! normal velocity that the impulse makes. Spin is kept as s = r·ω (m/s). With these and I = ½mr² of
-//! a solid disc, an update needs no radius and of the masses only i's share
-//! g_i = m_ij/m_i = m_j/(m_i + m_j), with j's share 1 − g_i:
+//! The sweep works with **reduced impulses** λ = P/m_ij (m/s): the change of the contact's relative normal velocity
+//! that the impulse makes. Spin is stored as s = r·ω (m/s). With these and I = ½mr² of a solid disc, an update needs no
+//! radius, and of the masses only the ratio g_i = m_ij/m_i = m_j/(m_i + m_j) of i; that of j is 1 − g_i:
 //!
 //! > v_n = n·(v_i − v_j),  v_t = t·(v_i − v_j) − s_i − s_j,
 //! > Δv_i = g_i (λ_n n + λ_t t),  Δv_j = −(1 − g_i)(λ_n n + λ_t t),
 //! > Δs_i = −(r_i²/I_i) m_ij λ_t = −2 g_i λ_t,  Δs_j = −2 (1 − g_i) λ_t,
 //!
-//! so that λ_n changes v_n by λ_n, and λ_t changes v_t by λ_t (1 + 2) = 3 λ_t: m_n/m_t = 3, with
-//! rotation held still 1. Against a fixed body g_i = 1.
+//! so that λ_n changes v_n by λ_n, and λ_t changes v_t by λ_t (1 + 2) = 3 λ_t: m_n/m_t = 3, or 1 without rotation.
+//! Against a fixed body g_i = 1.
 //!
-//! **Between borders that shear** (`world::periodic`) the image of j that is nearest to i goes with v_j + (w, 0),
-//! and what the laws ask for is the velocity relative to that image:
+//! **Between borders that shear** (`world::periodic`) the image of j that is nearest to i moves with v_j + (w, 0), and
+//! the laws ask for the velocity relative to that image:
 //!
 //! > v_n = n·(v_i − v_j) − n_x w,  v_t = t·(v_i − v_j) + n_y w − s_i − s_j.
 //!
-//! w is known when the step begins, and goes with the normal, so that whoever asks for a relative velocity has it in
-//! that, and no method has to know. Impulses act as on any other pair, on j where it is.
+//! w is known at the beginning of the step and is stored with the normal. Every function that computes a relative
+//! velocity gets it with the normal, and methods need no change. Impulses act on j itself, as in any other pair.
 
 use std::fmt::Debug;
 
@@ -27,45 +26,45 @@ use glam::DVec2;
 use crate::contact::{Contact, Lanes};
 use crate::world::World;
 
-/// What a step computes: how bodies move, and whether contacts rub. Everything here is known when the step is
-/// compiled, so a leaner model has no branch for what it leaves out.
+/// The mechanics that a step computes: motion of bodies, friction and rotation. All of this is fixed at compile time,
+/// so a leaner model has no branches for the parts that it leaves out.
 ///
-/// Cohesion and the cone of friction are not among it: in shifted impulses they are numbers (`contact::law`).
+/// Cohesion and the friction cone are not part of the model: in shifted impulses they are numbers (`contact::law`).
 pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
-    /// A body as the sweep sees it; with several lanes, a body a lane.
+    /// A body as the sweep stores it; with several lanes, one body per lane.
     type Body<T: Lanes>: Copy + Send + Sync + Debug + 'static;
-    /// A contact's normal as the sweep sees it.
+    /// A contact's normal as the sweep stores it.
     type Normal<T: Lanes>: Copy + Send + Sync + Debug + 'static;
     /// Number of axes.
     const AXES: usize;
-    /// True where contacts carry tangential impulses.
+    /// True if contacts carry tangential impulses.
     const FRICTION: bool;
-    /// True where grains turn.
+    /// True if grains turn.
     const ROTATION: bool;
-    /// True where images of grains slide beside the grains themselves.
+    /// True if images of grains slide relative to the grains themselves.
     const SLIDES: bool = false;
     /// m_n / m_t, the same for every contact of solid discs.
     const TANGENTIAL_COMPLIANCE: f64;
 
     /// Degrees of freedom of a body.
     const DEGREES: usize;
-    /// Inertia of each degree of freedom over the body's mass: with s = rω, ½Iω² = ½(m/2)s².
+    /// Inertia of each degree of freedom divided by the body's mass: with s = rω, ½Iω² = ½(m/2)s².
     const INERTIA_OVER_MASS: [f64; 3];
 
     /// Packs grain `index` of a world.
     fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index`.
     fn store(body: &Self::Body<f64>, world: &mut World, index: usize);
-    /// The body after an acceleration during `time_step_secs` at its present place.
+    /// The body after gravity has acted for `time_step_secs` at its present position.
     fn accelerated(
         body: &Self::Body<f64>,
         world: &World,
         index: usize,
         time_step_secs: f64,
     ) -> Self::Body<f64>;
-    /// Packs a normal, given along x and y.
+    /// Packs a normal from its x and y components.
     fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T>;
-    /// Packs the normal of a contact as it is in a world: it tells of an image that slides.
+    /// Packs the normal of a contact in a world, with the slide velocity of its image.
     #[inline(always)]
     fn normal_of(world: &World, contact: &Contact) -> Self::Normal<f64> {
         let normal = Self::normal(contact.normal.to_array());
@@ -75,26 +74,26 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
             false => normal,
         }
     }
-    /// A packed normal of a pair whose image of j goes so fast (m/s along x) beside j, where images slide.
+    /// Adds a slide velocity, m/s along x, to the packed normal of a pair, if images slide in this model.
     #[inline(always)]
     fn sliding(normal: Self::Normal<f64>, _slide: f64) -> Self::Normal<f64> {
         normal
     }
-    /// How fast the image goes that a packed normal is of, m/s along x.
+    /// Slide velocity of the image of a packed normal, m/s along x.
     #[inline(always)]
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// The same along n and t, m/s: by so much the relative velocity is less than that of i and j themselves.
+    /// The slide velocity's contribution to the relative velocity of i and j along n and t, m/s; it is subtracted.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
         let slide = Self::slide(normal);
         [x * slide, -y * slide]
     }
-    /// A packed normal along x and y; along axes that there are not, 0.
+    /// The x and y components of a packed normal; 0 along axes that the model does not have.
     fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2];
-    /// (v_n, v_t) relative to the image that a packed normal is of, of those relative to the body itself.
+    /// Converts (v_n, v_t) relative to body j to (v_n, v_t) relative to the image of j that a packed normal belongs to.
     #[inline(always)]
     fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
         velocity
@@ -107,7 +106,7 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     ) -> [T; 2];
     /// (v_n, v_t) of body i relative to a body at rest, m/s.
     fn velocity<T: Lanes>(normal: Self::Normal<T>, i: &Self::Body<T>) -> [T; 2];
-    /// Applies λ_n and λ_t (m/s) to bodies i and j, `share` being g_i.
+    /// Applies λ_n and λ_t (m/s) to bodies i and j; `share` is g_i.
     fn push_pair<T: Lanes>(
         i: &mut Self::Body<T>,
         j: &mut Self::Body<T>,
@@ -123,13 +122,13 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     );
     /// Kinetic energy, J, of a body of `mass` (kg).
     fn kinetic_energy(body: &Self::Body<f64>, mass: f64) -> f64;
-    /// A body's velocity, an entry a degree of freedom; the rest is 0.
+    /// Velocity of a body, one entry per degree of freedom; further entries are not used.
     fn coordinates<T: Lanes>(body: &Self::Body<T>) -> [T; 3];
-    /// The body of which these are the coordinates.
+    /// The body with these coordinates.
     fn from_coordinates<T: Lanes>(coordinates: [T; 3]) -> Self::Body<T>;
-    /// Gives a body these coordinates; what is none of its degrees of freedom stays.
+    /// Sets the coordinates of a body; entries that are not degrees of freedom of the model stay unchanged.
     fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
-    /// How the coordinates of i, then of j, enter (v_n, v_t): v_n = Σ \[body\]\[0\]·coordinates,
+    /// Derivatives of (v_n, v_t) by the coordinates of i, then of j: v_n = Σ \[body\]\[0\]·coordinates,
     /// v_t = Σ \[body\]\[1\]·coordinates.
     fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2];
     /// Work of the gravity impulse M(`free` − `before`) in a step that ends as `after`, J: the
@@ -145,11 +144,11 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
 /// A body on the x axis.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LineBody<T = f64> {
-    /// m/s.
+    /// Velocity along x, m/s.
     pub velocity: T,
 }
 
-/// One axis: neither friction nor rotation.
+/// One axis, without friction and rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Line;
 
@@ -249,17 +248,17 @@ impl Model for Line {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub struct PlaneBody<T = f64> {
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: [T; 2],
     /// s = r·ω, m/s.
     pub spin: T,
 }
 
-/// Two axes, neither friction nor rotation.
+/// Two axes, without friction and rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SmoothPlane;
 
-/// Two axes and friction, no rotation.
+/// Two axes and friction, without rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plane;
 
@@ -267,20 +266,20 @@ pub struct Plane;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpinningPlane;
 
-/// The same, and images that slide. Its friction may be 0.
+/// Two axes, friction, rotation, and images that slide. Friction may be 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShearedPlane;
 
-/// A normal, and how fast the image of j slides that it is of.
+/// A normal with the slide velocity of the image of j.
 #[derive(Clone, Copy, Debug)]
 pub struct SlidingNormal<T> {
     /// n, from j to i.
     pub normal: [T; 2],
-    /// w, m/s along x; 0 where the pair meets inside the cell.
+    /// w, m/s along x; 0 if the pair meets inside the cell.
     pub slide: T,
 }
 
-/// What all kinds of motion in the plane share. `own` is what one of them has of its own.
+/// Implements [`Model`] for a kind of motion in the plane; `own` contains the items that only this kind has.
 macro_rules! plane_model {
     ($name:ident, $normal:ty, |$of:ident| $packed:expr, $along_axes:expr, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
         impl Model for $name {

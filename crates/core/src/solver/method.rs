@@ -1,4 +1,4 @@
-//! The methods by name, and what there is to know of each.
+//! The list of methods, and the properties of each.
 
 use crate::setting::words;
 
@@ -16,7 +16,8 @@ words! {
         InteriorPoint = "interior-point",
             "interior point with sparse factorisation: convex friction models to any tolerance";
         Auto = "auto",
-            "newton under Coulomb's law, but nncg while a large pile flows; interior-point under convex friction models";
+            "newton under Coulomb's law, but nncg while a large pile flows; interior-point under convex friction \
+                models";
     }
 }
 
@@ -33,7 +34,7 @@ words! {
     }
 }
 
-/// What there is to know of a method.
+/// Properties of a method.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodInfo {
     /// The method.
@@ -42,33 +43,33 @@ pub struct MethodInfo {
     pub name: &'static str,
     /// How it works, one line.
     pub summary: &'static str,
-    /// What its result solves exactly, one line.
+    /// The laws that its converged result satisfies, one line.
     pub solves: &'static str,
-    /// Where it comes from.
+    /// The publication or other source that it is taken from.
     pub source: &'static str,
-    /// In which order it takes the contacts.
+    /// The order in which it visits the contacts.
     pub order: MethodOrder,
-    /// True where it solves the models of friction beside Coulomb's law.
+    /// True if it also solves the models of friction other than Coulomb's law.
     pub takes_models: bool,
-    /// True where it solves for walls that a force drives.
+    /// True if it supports walls that a force drives.
     pub takes_drives: bool,
-    /// True where it solves for grains whose images slide.
+    /// True if it supports periodic borders that shear, whose images of grains slide.
     pub takes_shear: bool,
 }
 
-/// In which order a method takes the contacts.
+/// The order in which a method visits the contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodOrder {
-    /// In that of the settings.
+    /// The order of the settings.
     OfSettings,
-    /// In this one, whatever the settings ask for.
+    /// This order, regardless of the settings.
     Always(Ordering),
-    /// In none: it takes them all at once.
+    /// No order: the method updates all contacts at once.
     AllAtOnce,
 }
 
 impl MethodOrder {
-    /// The order of the rows where the settings ask for `asked`.
+    /// The order of the rows if the settings ask for `asked`.
     pub(crate) fn of_rows(self, asked: Ordering) -> Ordering {
         match self {
             Self::Always(needed) => needed,
@@ -77,12 +78,12 @@ impl MethodOrder {
     }
 }
 
-/// What is solved by every method that rests at a zero of the common natural map.
+/// Laws satisfied by every method that converges to a zero of the common natural map.
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
-/// What is solved where the bound of friction is a fixed point of its own.
+/// Laws satisfied at a fixed point of the iteration that recomputes the friction bound from its own impulses.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
-/// One that takes shear alone.
+/// A method that supports shear, but neither models of friction nor driven walls.
 const fn known(
     method: Method,
     order: MethodOrder,
@@ -102,7 +103,7 @@ const fn known(
     }
 }
 
-/// All methods, in the order in which they are shown: that of [`Method`].
+/// All methods, in the order in which they are shown, which is the order of [`Method`].
 pub const METHODS: [MethodInfo; Method::ALL.len()] = {
     use MethodOrder::{AllAtOnce, Always, OfSettings};
     [
@@ -188,12 +189,12 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
 };
 
 impl Method {
-    /// What there is to know of it.
+    /// The properties of this method.
     pub const fn info(self) -> &'static MethodInfo {
         &METHODS[self as usize]
     }
 
-    /// True where the order of the settings tells the method in which order to sweep.
+    /// Returns true if the method sweeps in the order that the settings give.
     pub fn sweeps_in_order(self) -> bool {
         self.info().order == MethodOrder::OfSettings
     }

@@ -1,13 +1,13 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
 //!
-//! * `kinematics`, `model`: how bodies move, and what a step is compiled for.
-//! * `problem/`: the problem's data, how it is set up, and its residual.
-//! * `method`, `settings`: the methods by name, and how well a step is to be solved.
-//! * `methods/`: what solves a problem, a file or folder a method. `solve` picks from them.
-//! * `solutions`: the solutions that a step has, from several starts.
-//! * `onlooker`: who sees how far a long solve is.
-//! * `linear/`: the sparse factorisations that some of them use.
-//! * `delassus/`: problems in the Delassus operator alone.
+//! * `kinematics`, `model`: how bodies move, and the variants that a step is compiled for.
+//! * `problem/`: the problem's data, its set-up and its residual.
+//! * `method`, `settings`: the list of methods, and how accurately a step is to be solved.
+//! * `methods/`: one file or folder per method. `solve` picks from them.
+//! * `solutions`: search for several solutions of one step from several starts.
+//! * `onlooker`: progress reports of long solves.
+//! * `linear/`: the sparse factorisations that some methods use.
+//! * `delassus/`: problems given by the Delassus operator alone.
 
 mod delassus;
 mod kinematics;

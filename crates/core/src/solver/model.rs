@@ -1,26 +1,26 @@
-//! Which model a step is compiled for, and where its problems are kept.
+//! Chooses the model that a step is compiled for, and keeps the problems of each model.
 
 use super::kinematics::{Line, Model, Plane, ShearedPlane, SmoothPlane, SpinningPlane};
 use super::methods::Memory;
 use super::problem::StepProblem;
 use crate::world::{FrictionCone, Parameters, Periodic, Physics};
 
-/// What a model computes.
+/// The parts of mechanics that a model computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelParts {
-    /// 1 or 2.
+    /// Number of axes, 1 or 2.
     pub axes: u8,
-    /// True where borders shear.
+    /// True if the periodic borders shear.
     pub sheared: bool,
-    /// True where contacts carry tangential impulses.
+    /// True if contacts carry tangential impulses.
     pub friction: bool,
-    /// True where grains turn; without friction nothing turns them.
+    /// True if grains turn; without friction nothing turns them.
     pub rotation: bool,
 }
 
 impl ModelParts {
-    /// The leanest model that computes what the scene has (`physics`) and what is switched on at
-    /// present: without friction where μ = 0. It gives the same impulses as the fuller model would.
+    /// The leanest model that computes everything the scene has (`physics`) and the parameters switch on: without
+    /// friction if μ = 0. It gives the same impulses as a fuller model.
     pub(crate) fn leanest(
         physics: Physics,
         periodic: Option<Periodic>,
@@ -35,8 +35,8 @@ impl ModelParts {
     }
 }
 
-/// Evaluates an expression for the [`Model`] that computes just these [`ModelParts`], by a name of your own:
-/// `with_model!(parts, M => work::<M>())`.
+/// Evaluates an expression with the [`Model`] that computes exactly these [`ModelParts`] bound to a type name of your
+/// choice: `with_model!(parts, M => work::<M>())`.
 #[macro_export]
 macro_rules! with_model {
     ($parts:expr, $M:ident => $work:expr) => {
@@ -58,23 +58,23 @@ macro_rules! with_model {
     };
 }
 
-/// The cone of friction of a scene at present. Without cohesion the two are one.
+/// The friction cone in use. Without cohesion both cones are the same, so it is then the shifted one.
 pub(crate) fn cone_of(physics: Physics, parameters: &Parameters) -> FrictionCone {
     if physics.cohesion && parameters.bond > 0.0 { parameters.cone } else { FrictionCone::Shifted }
 }
 
-/// A problem, and what the methods keep that solve it.
+/// A problem, and the memory of the methods that solve it.
 #[derive(Clone, Debug, Default)]
 pub struct Slot<M: Model> {
     /// The problem.
     pub problem: StepProblem<M>,
-    /// Room for some of its rows, to be solved by themselves.
+    /// Room for a subset of its rows, to be solved separately.
     pub part: StepProblem<M>,
-    /// What the methods keep.
+    /// Memory of the methods.
     pub memory: Memory,
 }
 
-/// A slot for each model; those that a scene never uses hold no memory.
+/// One slot per model; slots of models that a scene never uses hold no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     line: Slot<Line>,

@@ -1,15 +1,15 @@
-//! An onlooker at long solves: it sees how far a solve is, and may end it. A process has one, which its command line
-//! sets for a single solve. A solve that the onlooker ends has not converged; no other result depends on it.
+//! Progress reports of long solves to an onlooker, which may end them. A process has at most one onlooker; the command
+//! line sets it for a single solve. A solve that the onlooker ends has not converged; no other result depends on it.
 
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
-/// How far a solve is.
+/// Progress of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveProgress {
-    /// Sweeps so far, or iterations of a method without sweeps.
+    /// Sweeps so far, or iterations if the method has no sweeps.
     pub sweeps: u32,
-    /// The residual, dimensionless, after each doubling of the sweeps; none between.
+    /// The residual, dimensionless, after each doubling of the number of sweeps; `None` in between.
     pub residual: Option<f64>,
 }
 
@@ -17,13 +17,13 @@ type Onlooker = Box<dyn Fn(SolveProgress) -> ControlFlow<()> + Send + Sync>;
 
 static ONLOOKER: OnceLock<Onlooker> = OnceLock::new();
 
-/// Shows every further solve of this process to an onlooker after each sweep, and ends those of which it says so. The
-/// first onlooker stays.
+/// Reports every later solve of this process to `onlooker` after each sweep, and ends a solve if the onlooker breaks.
+/// Only the first call sets the onlooker.
 pub fn look_on(onlooker: impl Fn(SolveProgress) -> ControlFlow<()> + Send + Sync + 'static) {
     ONLOOKER.get_or_init(|| Box::new(onlooker));
 }
 
-/// True if the onlooker ends the solve that is so far.
+/// Returns true if the onlooker ends a solve that has got this far.
 pub fn is_ended(progress: SolveProgress) -> bool {
     ONLOOKER.get().is_some_and(|onlooker| onlooker(progress).is_break())
 }

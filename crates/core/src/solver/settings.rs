@@ -1,12 +1,12 @@
-//! How well a step is to be solved, and under which model of friction.
+//! How accurately a step is to be solved, and under which model of friction.
 
 use super::method::{METHODS, Method, Ordering};
 use crate::error::{Error, Result};
 use crate::setting::{Group, settings, words};
 
 words! {
-    /// What the tolerance of a solver refers to: normal and tangential impulses P of a sweep, or of an iteration where there
-    /// are no sweeps. `impulse-per-mass` is tested after every sweep.
+    /// The quantity that the solver's tolerance refers to. P are the normal and tangential impulses, ΔP their change in
+    /// a sweep, or in an iteration of a method without sweeps. `impulse-per-mass` is tested after every sweep.
     #[derive(Default)]
     pub enum StopTest {
         RelativeChange = "relative-change", "‖ΔP‖ of a sweep over ‖P‖";
@@ -19,15 +19,16 @@ words! {
 }
 
 words! {
-    /// What is asked of friction in a step. All but Coulomb's law are made convex by numbers that stay the same
-    /// while a step is solved (`problem::friction`), so that the velocities of a solve are unique.
+    /// The friction law that a step is solved under. Every model except Coulomb's law is made convex by numbers that
+    /// stay fixed while a step is solved (`problem::friction`), so that the velocities of a solve are unique.
     #[derive(Default)]
     pub enum FrictionModel {
         #[default]
         Coulomb = "coulomb",
             "Coulomb's law (M. Jean, 1999); it is not convex, so some steps of large piles are not solved";
         Tresca = "tresca",
-            "bounded friction: μN of fifty Coulomb sweeps is the bound (P. D. Panagiotopoulos, 1975); on large piles friction lags behind the pressure";
+            "bounded friction: μN of fifty Coulomb sweeps is the bound (P. D. Panagiotopoulos, 1975); on large \
+                piles friction lags behind the pressure";
         Associated = "associated",
             "cone complementarity (M. Anitescu, 2006); a sliding contact opens by Δt·μ·v_t per step, and bonds break";
         Desaxce = "desaxce",
@@ -36,31 +37,31 @@ words! {
 }
 
 impl StopTest {
-    /// True where it tells how good a solution is, rather than how much of it a sweep changed.
+    /// Returns true if the test measures how good a solution is, rather than how much a sweep changes it.
     pub(crate) fn judges_solutions(self) -> bool {
         matches!(self, Self::Residual | Self::VelocityError)
     }
 }
 
 impl FrictionModel {
-    /// True where it has lagged numbers that a further solve of the same step takes anew.
+    /// Returns true if the model has lagged numbers that a further solve of the same step recomputes.
     pub fn is_taken_anew(self) -> bool {
         matches!(self, Self::Tresca | Self::Desaxce)
     }
 
-    /// True where it allows the impulses of a cone, the shifted one alone: the compressive cone with cohesion is no
-    /// convex set, and its convex hull is the shifted cone.
+    /// Returns true if the model allows the impulses of a cone. The cone is always the shifted one: the compressive
+    /// cone with cohesion is not convex, and its convex hull is the shifted cone.
     pub(crate) fn is_on_cone(self) -> bool {
         matches!(self, Self::Associated | Self::Desaxce)
     }
 }
 
 settings! {
-    /// Method, stopping test and limits. Plain data, checked where a simulation takes them on.
+    /// Method, stopping test and limits. This is plain data, which is checked when a simulation takes it.
     ///
-    /// By default each step is solved under Coulomb's law, to velocities that are estimated to differ from those of a solution
-    /// by 1e-4 √(g d), which no slump of a pile feels. A flowing step of thousands of grains is left with a larger error,
-    /// which is reported ([`Measures::velocity_error`](super::Measures)).
+    /// By default each step is solved under Coulomb's law to an estimated velocity error of 1e-4 √(g d), which is too
+    /// small to affect the slump of a pile. A flowing step of thousands of grains ends with a larger error, which is
+    /// reported ([`Measures::velocity_error`](super::Measures)).
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Solver of each step", {
@@ -71,7 +72,8 @@ settings! {
             "Order in which a sweep visits the contacts", {
             control: shown("Order", "Order in which a sweep visits the contacts."),
         }
-        stop: StopTest = StopTest::VelocityError, "stop" ("TEST"), "Stopping test: the quantity that the tolerance limits", {
+        stop: StopTest = StopTest::VelocityError, "stop" ("TEST"), "Stopping test: the quantity that the tolerance \
+            limits", {
             control: shown("Stops on", "The quantity that the tolerance limits."),
         }
         /// In the unit of `stop`.
@@ -86,8 +88,7 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not
-        /// converged.
+        /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not converged.
         max_sweeps: u32 = 5_000, "max-sweeps", "Most sweeps per step; a step that needs more is reported as unsolved; the solver auto may stop earlier", {
             allowed: "at least 1",
             holds: |value| value > 0,
@@ -103,7 +104,8 @@ settings! {
             control: shown("Warm start", "Each step starts from the impulses of the step before."),
         }
         friction_model: FrictionModel = FrictionModel::Coulomb, "friction-model" ("MODEL"),
-            "Friction model: Coulomb's law, or a convex model instead; `slump list friction-models` says what each model gets wrong", {
+            "Friction model: Coulomb's law, or a convex model instead; `slump list friction-models` says what each \
+                model gets wrong", {
             needs: Needs::Friction,
             control: shown(
                 "Friction",
@@ -111,7 +113,8 @@ settings! {
             ),
         }
         model_solves: u32 = 1, "model-solves",
-            "Solves per step under tresca or desaxce, with updated bounds each time; more solves approach Coulomb's law and cost more", {
+            "Solves per step under tresca or desaxce, with updated bounds each time; more solves approach Coulomb's \
+                law and cost more", {
             allowed: "between 1 and 1000",
             holds: |value| (1..=1000).contains(&value),
             needs: Needs::Friction,
@@ -125,24 +128,25 @@ settings! {
     }
 }
 
-/// What came after the first scene files is written where it is not left at its default.
+/// Settings that are newer than the first scene files are written only if they differ from their defaults.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
 impl SolverSettings {
-    /// Gauss–Seidel sweeps as most programs of the field do them: to a relative change of the impulses.
+    /// Gauss–Seidel sweeps to a relative change of the impulses, the scheme of most programs of the field.
     pub const SWEEPS: Self =
         Self { stop: StopTest::RelativeChange, ..Self::to_residual(Method::Nsgs, 1e-6, 5_000) };
 
-    /// The default within bounds of friction, a convex problem that is solved at any size.
+    /// The default settings with bounded friction (Tresca), a convex problem that can be solved at any size.
     pub const BOUNDED: Self = Self { friction_model: FrictionModel::Tresca, ..Self::DEFAULT };
 
-    /// The paper's scheme: such sweeps, to the relative change at which its verdicts no longer hang on the solver.
+    /// The scheme of the paper: [`Self::SWEEPS`], to the relative change at which the paper's verdicts no longer depend
+    /// on the solver.
     pub const PAPER: Self = Self { tolerance: 1e-7, ..Self::SWEEPS };
 
-    /// Solving to a common residual, whatever the step's own settings: under Coulomb's law, from the impulses that
-    /// there are.
+    /// Settings that solve to a given residual under Coulomb's law, regardless of the step's own settings. The solve
+    /// starts from the present impulses.
     pub const fn to_residual(method: Method, tolerance: f64, max_sweeps: u32) -> Self {
         Self {
             method,
@@ -156,11 +160,10 @@ impl SolverSettings {
         }
     }
 
-    /// Checks the numbers against their ranges, and whether method, model of friction and number of solves go
-    /// together.
+    /// Checks the numbers against their ranges, and that the method supports the model of friction.
     ///
     /// # Errors
-    /// Names the field, its value and what it may be.
+    /// Names the field, its value and the allowed values.
     pub fn validate(&self) -> Result<()> {
         self.validate_each()?;
         let (method, friction_model) = (self.method, self.friction_model);
@@ -176,17 +179,17 @@ impl SolverSettings {
         Ok(())
     }
 
-    /// True if steps are solved under another model of friction than Coulomb's law.
+    /// Returns true if steps are solved under a model of friction other than Coulomb's law.
     pub(crate) fn solves_models(&self) -> bool {
         self.friction_model != FrictionModel::Coulomb
     }
 
-    /// The same under Coulomb's law.
+    /// These settings with Coulomb's law.
     pub(crate) fn without_model(self) -> Self {
         Self { friction_model: FrictionModel::Coulomb, ..self }
     }
 
-    /// The same by another method, under Coulomb's law if that takes no models of friction.
+    /// These settings with another method; with Coulomb's law if that method supports no other model of friction.
     pub fn by(self, method: Method) -> Self {
         let by_it = Self { method, ..self };
         if method.info().takes_models { by_it } else { by_it.without_model() }

@@ -1,8 +1,9 @@
-//! The solutions that one step has under Coulomb's law.
+//! The solutions of one step under Coulomb's law.
 //!
-//! The law is not convex, so a step of a pile that flows can have several solutions, and where a method starts decides
-//! which of them it finds. Here conjugate gradients start from several impulses: those of the step before, none, and
-//! random ones that the law allows. Newton's method continues from where they end if that brings it nearer.
+//! The law is not convex, so a step of a flowing pile can have several solutions, and the start of a method decides
+//! which of them it finds. Here conjugate gradients start from several impulses: those of the step before, zero, and
+//! random ones that the law allows. Newton's method then continues from their result, and its result is kept if its
+//! residual is smaller.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -14,41 +15,41 @@ use super::problem::{StepProblem, measure, residual};
 use super::settings::SolverSettings;
 use super::solve::solve;
 
-/// Sweeps of Newton's method at the end of each search at the most.
+/// Maximum number of sweeps of Newton's method at the end of each search.
 const NEWTON_STEPS: u32 = 400;
 
-/// Searches end with it up to this number of contacts.
+/// Searches end with Newton's method only up to this number of contacts.
 const CONTACTS_FOR_NEWTON: usize = 10_000;
 
-/// How solutions are looked for.
+/// Settings of a search for solutions.
 #[derive(Clone, Copy, Debug)]
 pub struct SolutionSearch {
-    /// From how many starts: the impulses of the step before, none, then random ones.
+    /// Number of starts: first the impulses of the step before, then zero, then random ones.
     pub starts: u32,
-    /// Of the random ones.
+    /// Seed of the random starts.
     pub seed: u64,
-    /// Up to so many sweeps from each.
+    /// Maximum number of sweeps from each start.
     pub max_sweeps: u32,
     /// The residual at which a search ends.
     pub tolerance: f64,
 }
 
-/// What one or more starts led to.
+/// A solution that one or more starts lead to.
 #[derive(Clone, Debug)]
 pub struct Solution<M: Model> {
     /// The problem, solved under Coulomb's law.
     pub problem: StepProblem<M>,
     /// The common residual.
     pub residual: f64,
-    /// How far its velocities are taken to be from those of a solution, m/s.
+    /// Estimated distance of its velocities from those of an exact solution, m/s.
     pub velocity_error: f64,
-    /// The starts that led there, from 0.
+    /// Numbers of the starts that lead there, from 0.
     pub starts: Vec<u32>,
 }
 
 impl SolutionSearch {
-    /// Looks for solutions. Two results are one solution unless they are farther apart than both are taken to be from
-    /// theirs.
+    /// Searches for solutions. Two results count as one solution if their distance is at most the sum of their velocity
+    /// errors.
     pub fn find<M: Model>(&self, problem: &StepProblem<M>) -> Vec<Solution<M>> {
         let mut found: Vec<Solution<M>> = Vec::new();
         for start in 0..self.starts {
@@ -69,7 +70,7 @@ impl SolutionSearch {
         found
     }
 
-    /// What one start leads to.
+    /// Searches from one start.
     pub fn from<M: Model>(&self, problem: &StepProblem<M>, start: u32) -> Solution<M> {
         let mut found = problem.clone();
         found.take_coulombs_law();
@@ -78,7 +79,7 @@ impl SolutionSearch {
         let sweeps = SolverSettings::to_residual(Method::Nncg, self.tolerance, self.max_sweeps);
         let report = solve(&mut found, &mut memory, &sweeps);
         let mut left = residual(&found);
-        // Newton's method does not take walls that a force drives.
+        // Newton's method does not support walls that a force drives.
         if !report.converged && found.rows.len() <= CONTACTS_FOR_NEWTON && !found.is_driven() {
             let mut nearer = found.clone();
             let by_it = SolverSettings::to_residual(Method::Newton, self.tolerance, NEWTON_STEPS);
@@ -117,13 +118,14 @@ impl SolutionSearch {
     }
 }
 
-/// How far the velocities of two solutions of one problem are apart, m/s: the root mean square over the grains that touch
-/// something, weighted with mass; spins count with the radius of gyration.
+/// Distance between the velocities of two solutions of one problem, m/s: the root mean square over the grains with
+/// contacts, weighted by mass. Spins count with the radius of gyration.
 pub fn velocity_distance<M: Model>(one: &StepProblem<M>, other: &StepProblem<M>) -> f64 {
     distance_to_velocities(one, &velocities(other))
 }
 
-/// The same, to velocities that were taken down by [`velocities`]: the problem may be laid out for another method.
+/// Distance from velocities that [`velocities`] has copied, m/s, measured as in [`velocity_distance`]. The rows may
+/// meanwhile have been sorted for another method.
 pub fn distance_to_velocities<M: Model>(problem: &StepProblem<M>, others: &[[f64; 3]]) -> f64 {
     let grains = problem.bodies.now.iter().zip(others).zip(&problem.bodies.masses);
     let squares = grains.map(|((one, other), mass)| {
@@ -135,7 +137,7 @@ pub fn distance_to_velocities<M: Model>(problem: &StepProblem<M>, others: &[[f64
     if mass > 0.0 { (squares / mass).sqrt() } else { 0.0 }
 }
 
-/// The velocities of all grains by the coordinates of the model: m/s, and rad/s for spins.
+/// Velocities of all grains in the coordinates of the model, m/s; spins are r·ω.
 pub fn velocities<M: Model>(problem: &StepProblem<M>) -> Vec<[f64; 3]> {
     problem.bodies.now.iter().map(M::coordinates).collect()
 }

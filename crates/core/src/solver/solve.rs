@@ -30,7 +30,7 @@ use super::settings::SolverSettings;
 /// assert!(simulation.next_problem(Left(Method::Newton)) < 1e-3);
 /// # Ok::<(), slump_core::error::Error>(())
 /// ```
-// Compiled once, with the library, for all models there are: who calls it with one of them compiles none of it anew.
+// Compiled once, in this crate, for every model: callers do not compile it again.
 #[inline(never)]
 pub fn solve<M: Model>(
     problem: &mut StepProblem<M>,

@@ -1,5 +1,5 @@
-//! Shapes that grains do not move: what they are, how they move, and how they show. How a disc touches
-//! them is in `contact::features`.
+//! Shapes that grains cannot move: their geometry, motion and outline. `contact::features` computes how a disc
+//! touches them.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::motion::{Carry, RigidVelocity, within};
 use crate::number::Parts;
 
-/// A disc that no grain moves.
+/// A disc that grains cannot move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
@@ -17,7 +17,7 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// A shape that no grain moves, other than a disc. All lengths in m.
+/// A shape, other than a disc, that grains cannot move. All lengths in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Boundary {
@@ -28,16 +28,16 @@ pub enum Boundary {
         /// Points out of the solid.
         normal: DVec2,
     },
-    /// A half-space that moves along its normal, whatever is in its way, and then stays: short for one with
-    /// such a [`Motion`](super::Motion).
+    /// A half-space that moves along its normal, regardless of resistance, and then stops. Short for a half-space
+    /// with such a [`Motion`](super::Motion).
     Piston {
         /// A point of the surface.
         point: DVec2,
         /// Points out of the solid.
         normal: DVec2,
-        /// m/s; positive towards the grains.
+        /// Speed, m/s; positive towards the grains.
         speed: f64,
-        /// How far it has still to go.
+        /// Remaining distance, m.
         travel: f64,
     },
     /// A thin wall from one point to another, solid from both sides.
@@ -59,25 +59,25 @@ pub enum Boundary {
     },
 }
 
-/// A piece of a boundary's surface, as pictures show it. All lengths in m.
+/// A piece of a boundary's outline, for drawing. All lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
-    /// A line without ends.
+    /// An infinite line.
     Endless {
-        /// A point of it.
+        /// A point of the line.
         point: DVec2,
         /// Points out of the solid. Need not have length 1.
         normal: DVec2,
     },
     /// A wall between two points, open on both sides.
     Wall([DVec2; 2]),
-    /// A side of a solid that lies on its left.
+    /// A side of a solid, which lies on the side's left.
     Side([DVec2; 2]),
 }
 
-// No `_` in these: each is to be thought of where a shape is added.
+// No `_` arms here: a new shape must be considered in each match.
 impl Boundary {
-    /// Its surface.
+    /// Pieces of the outline.
     pub fn edges(&self) -> Vec<Edge> {
         match self {
             Self::HalfSpace { point, normal } | Self::Piston { point, normal, .. } => {
@@ -94,7 +94,7 @@ impl Boundary {
         }
     }
 
-    /// What scene files call its shape.
+    /// Name of the shape in scene files.
     pub const fn word(&self) -> &'static str {
         match self {
             Self::HalfSpace { .. } => "half-space",
@@ -105,7 +105,7 @@ impl Boundary {
         }
     }
 
-    /// True where it stands across the x axis, as in scenes with that axis alone.
+    /// True if the surface is perpendicular to the x axis, as scenes with one axis need.
     pub fn is_across_line(&self) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => normal.y == 0.0,
@@ -113,12 +113,12 @@ impl Boundary {
         }
     }
 
-    /// True where it moves without a [`Motion`](super::Motion) of its own.
+    /// True if it moves without its own [`Motion`](super::Motion).
     pub(crate) fn moves_by_itself(&self) -> bool {
         matches!(self, Self::Piston { .. })
     }
 
-    /// How it goes by itself in the next `secs`; nothing where that is not at all.
+    /// Its own velocity in the next `secs`; `None` if it does not move by itself.
     pub(crate) fn velocity_in(&self, secs: f64) -> Option<RigidVelocity> {
         match *self {
             Self::Piston { normal, speed, travel, .. } => {
@@ -152,7 +152,7 @@ impl Boundary {
         }
     }
 
-    /// True where what goes in that direction goes along its normal, so that its surface does not rub.
+    /// True if motion in `direction` is along the surface normal, so that the surface does not rub.
     pub(crate) fn is_pushed_along(&self, direction: DVec2) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => {
@@ -162,7 +162,7 @@ impl Boundary {
         }
     }
 
-    /// True where its surface is a line without ends.
+    /// True if its surface is an infinite line.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Self::HalfSpace { .. } | Self::Piston { .. })
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{self, Error, Result};
 
-/// One disc as a scene describes it. Plain data, checked with the scene.
+/// One disc of a scene. Plain data, checked with the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grain {
@@ -19,10 +19,10 @@ pub struct Grain {
     /// Angular velocity, rad/s, positive anticlockwise.
     #[serde(default)]
     pub angular_velocity: f64,
-    /// True where the gravity field acts on this disc.
+    /// True if gravity acts on this disc.
     #[serde(default = "yes")]
     pub feels_gravity: bool,
-    /// Grey of the disc in the pictures that follow the paper: 0 black … 255 white.
+    /// Grey of the disc in pictures in the style of the paper: 0 is black, 255 white.
     #[serde(default = "light_grey")]
     pub tone: u8,
 }
@@ -36,7 +36,7 @@ fn light_grey() -> u8 {
 }
 
 impl Grain {
-    /// The grey of a grain that its scene does not colour.
+    /// The grey of a grain without a colour in its scene.
     pub(crate) const DEFAULT_TONE: u8 = 205;
 
     /// A disc at rest that feels gravity.
@@ -52,13 +52,13 @@ impl Grain {
     }
 }
 
-/// The discs of a world, one entry a disc in every list.
+/// The discs of a world. Each list has one entry per disc.
 ///
-/// The lists are apart because the passes that stream over all grains (prediction, integration,
-/// detection) each need few of them; the sweep, which needs a body's whole motion at random
-/// places, works on a packed copy (`solver::problem`).
+/// The lists are separate because the passes over all grains (prediction, integration, detection) need few of them
+/// each. The sweep needs a body's whole motion at random indices and works on a packed copy (`solver::problem`).
 ///
-/// Plain data, checked where a simulation takes it on; a running one shows its own and lends none.
+/// Plain data, checked when a simulation takes it over. A running simulation shows its own data but lends no mutable
+/// access.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grains {
@@ -66,7 +66,7 @@ pub struct Grains {
     pub positions: Vec<DVec2>,
     /// Velocities of the centres, m/s.
     pub velocities: Vec<DVec2>,
-    /// Angles turned since the start, rad.
+    /// Rotation angles since the start, rad.
     pub angles: Vec<f64>,
     /// Angular velocities, rad/s.
     pub angular_velocities: Vec<f64>,
@@ -74,24 +74,24 @@ pub struct Grains {
     pub radii: Vec<f64>,
     /// Masses, kg: areal density × πr².
     pub masses: Vec<f64>,
-    /// True where gravity acts.
+    /// True if gravity acts on the disc.
     pub feels_gravity: Vec<bool>,
-    /// Greys for the paper's pictures.
+    /// Greys for pictures in the style of the paper.
     pub tones: Vec<u8>,
-    /// By how much borders that wrap have brought each back since the start, m: with it a centre is where its ways have
-    /// led it.
+    /// Displacement that periodic borders have subtracted from each centre since the start, m. Added to the centre,
+    /// it gives the unwrapped position.
     pub brought_back: Vec<DVec2>,
-    /// The number that each keeps for the whole run: its place in the scene. Grains that are put in later have numbers
-    /// behind those of all other bodies.
+    /// Permanent numbers: a grain's index in the scene. Grains added later have numbers above those of all other
+    /// bodies.
     pub ids: Vec<u32>,
-    /// Grains that the run began with.
+    /// Number of grains at the start.
     pub count_at_start: u32,
-    /// Grains that were put in since.
+    /// Number of grains added since.
     pub added: u32,
 }
 
 impl Grains {
-    /// Lays out `grains` for the step. `areal_density` in kg/m².
+    /// Builds the lists from `grains`. `areal_density` in kg/m².
     pub fn new(grains: &[Grain], areal_density: f64) -> Self {
         let mut lists = Self::default();
         grains.iter().zip(0..).for_each(|(grain, id)| lists.push(grain, areal_density, id));
@@ -99,7 +99,7 @@ impl Grains {
         lists
     }
 
-    /// Adds a grain as the last, with that number. `areal_density` in kg/m².
+    /// Appends a grain with number `id`. `areal_density` in kg/m².
     pub(crate) fn push(&mut self, grain: &Grain, areal_density: f64, id: u32) {
         self.ids.push(id);
         self.positions.push(grain.position);
@@ -136,7 +136,7 @@ impl Grains {
         }
     }
 
-    /// One less; those after it move up.
+    /// Removes a grain; the grains after it move up.
     pub(crate) fn remove(&mut self, index: usize) {
         self.positions.remove(index);
         self.velocities.remove(index);
@@ -155,7 +155,7 @@ impl Grains {
         self.positions.len()
     }
 
-    /// True where there is no disc.
+    /// True if there are no discs.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
@@ -165,7 +165,7 @@ impl Grains {
         0.5 * self.masses[index] * self.radii[index] * self.radii[index]
     }
 
-    /// Grain `index` as a scene would describe it at this moment.
+    /// Grain `index` as a scene would describe it now.
     pub fn grain(&self, index: usize) -> Grain {
         Grain {
             position: self.positions[index],

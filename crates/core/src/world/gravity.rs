@@ -1,4 +1,4 @@
-//! The field that accelerates the grains, and how it turns, as a box that is tilted feels it.
+//! The acceleration field of the grains, and its rotation, as in a tilted box.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -9,20 +9,20 @@ use crate::world::motion::{at_time, direction};
 use crate::world::motion_check::check_table;
 use crate::world::{Physics, World};
 
-/// An acceleration field. Each grain can be told to ignore it (`feels_gravity`).
+/// An acceleration field. Single grains can ignore it (`feels_gravity`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Gravity {
-    /// The same everywhere.
+    /// The same acceleration everywhere.
     Uniform {
-        /// m/s².
+        /// Acceleration, m/s².
         acceleration: DVec2,
     },
-    /// Of the same norm everywhere, towards a point (paper §4); zero at the point itself.
+    /// Constant magnitude, towards a point (paper §4); zero at the point itself.
     Attraction {
         /// The centre of attraction, m.
         centre: DVec2,
-        /// m/s².
+        /// Magnitude, m/s².
         magnitude: f64,
     },
 }
@@ -38,7 +38,7 @@ impl Gravity {
         }
     }
 
-    /// The x component of the acceleration on a scene with the x axis alone, m/s².
+    /// The x component of the acceleration in a scene with the x axis only, m/s².
     pub(crate) fn acceleration_on_line(&self, x: f64) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.x,
@@ -57,7 +57,7 @@ impl Gravity {
         }
     }
 
-    /// g, the norm that the Bond number refers to, m/s².
+    /// g, the magnitude that the Bond number refers to, m/s².
     pub fn magnitude(&self) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.length(),
@@ -66,13 +66,13 @@ impl Gravity {
     }
 }
 
-/// How uniform gravity turns over time, from the direction in which it is listed.
+/// Rotation of uniform gravity over time, starting from its listed direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityTurn {
-    /// By which angle.
+    /// The angle over time.
     pub course: TurnCourse,
-    /// How long it has been turning, s.
+    /// Time since the rotation began, s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub elapsed_secs: f64,
 }
@@ -81,34 +81,34 @@ pub struct GravityTurn {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum TurnCourse {
-    /// Evenly.
+    /// Constant rate.
     Rate {
-        /// rad/s.
+        /// Rate, rad/s.
         rate: f64,
     },
-    /// Through angles at times, evenly from one to the next; before the first and after the last it stays.
+    /// Piecewise linear between the rows of a table; constant before the first and after the last.
     Table {
-        /// Rising, s.
+        /// Times in increasing order, s.
         times_secs: Vec<f64>,
-        /// One a time, rad.
+        /// One angle per time, rad.
         angles: Vec<f64>,
     },
 }
 
-/// Gravity of a world that turns: [`World::gravity`](super::World::gravity) is what it is in the last step.
+/// Turning gravity of a world. [`World::gravity`](super::World::gravity) is its value in the last step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TurningGravity {
     /// The acceleration at an angle of 0, m/s².
     pub listed: DVec2,
-    /// How it turns from there.
+    /// The rotation from there.
     pub turn: GravityTurn,
-    /// By which angle it is turned besides, as long as it is not changed, rad.
+    /// Additional tilt, constant until it is changed, rad.
     pub tilt: f64,
 }
 
 impl TurningGravity {
-    /// That of a gravity, which is uniform where it turns.
+    /// The turning gravity made from `gravity` and `turn`. Only uniform gravity turns.
     pub(crate) fn of(gravity: Gravity, turn: Option<&GravityTurn>) -> Option<Self> {
         match gravity {
             Gravity::Uniform { acceleration } => {
@@ -118,7 +118,8 @@ impl TurningGravity {
         }
     }
 
-    /// The gravity of the next `secs`: that of the middle of them, so that a step's impulse of it errs by Δt³.
+    /// The gravity of the next `secs`, evaluated at their middle, so that the error of a step's impulse is of order
+    /// Δt³.
     pub(crate) fn in_next(&self, secs: f64) -> Gravity {
         let angle = self.turn.angle(self.turn.elapsed_secs + 0.5 * secs) + self.tilt;
         Gravity::Uniform { acceleration: direction(angle).rotate(self.listed) }
@@ -129,7 +130,7 @@ impl GravityTurn {
     pub(super) const NONE: Self =
         Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
 
-    /// True where it turns nothing.
+    /// True if the gravity does not turn by itself.
     pub fn is_none(&self) -> bool {
         self.course == Self::NONE.course
     }
@@ -165,7 +166,8 @@ impl GravityTurn {
 }
 
 impl World {
-    /// Tilts uniform gravity by an angle (rad, positive anticlockwise) against how it is listed and turns by itself.
+    /// Tilts uniform gravity by an angle (rad, positive anticlockwise) relative to its listed direction and its own
+    /// rotation.
     pub(crate) fn tilt(&mut self, angle: f64) {
         if angle != 0.0
             && self.gravity_turn.is_none()
@@ -177,13 +179,13 @@ impl World {
             && turning.tilt != angle
         {
             turning.tilt = angle;
-            // What is looked at before the next step shows it.
+            // Shown to anyone who looks at the state before the next step.
             self.gravity = turning.in_next(0.0);
         }
     }
 
-    /// The direction in which grains that leave are lost, where there is one throughout: that of gravity as it is
-    /// listed. What turns by itself has none.
+    /// The direction in which grains that leave the scene are lost: that of listed gravity. `None` if gravity turns
+    /// by itself or is not uniform.
     pub(crate) fn listed_down(&self) -> Option<DVec2> {
         let listed = match (&self.gravity_turn, self.gravity) {
             (Some(turning), _) if turning.turn.is_none() => turning.listed,

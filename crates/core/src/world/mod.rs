@@ -24,32 +24,32 @@ use serde::{Deserialize, Serialize};
 use self::motion_check::check_motions;
 use crate::error::{Error, Result};
 
-/// Everything that a step reads and moves. Plain data, checked where a simulation takes it on; a running
-/// one shows its own and lends none.
+/// Everything that a step reads and moves. Plain data, checked when a simulation takes it over. A running simulation
+/// shows its own data but lends no mutable access.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct World {
     /// The moving discs.
     pub grains: Grains,
-    /// Discs that no grain moves, such as the rough base of the pile.
+    /// Discs that grains cannot move, such as the rough base of the pile.
     pub fixed_discs: Vec<Disc>,
-    /// Other shapes that no grain moves.
+    /// Other shapes that grains cannot move.
     pub boundaries: Vec<Boundary>,
-    /// How some of both move by themselves.
+    /// Motions of some fixed discs and boundaries.
     pub motions: Vec<Motion>,
     /// The field that accelerates the grains.
     pub gravity: Gravity,
-    /// How it turns, if it does: then `gravity` is what it is in the last step.
+    /// How gravity turns, if it does. Then `gravity` is its value in the last step.
     pub gravity_turn: Option<TurningGravity>,
-    /// Borders that wrap, if there are any.
+    /// Periodic borders, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// The diameter d that lengths are measured in, m.
+    /// The diameter d, the unit of length for relative quantities, m.
     pub mean_diameter: f64,
 }
 
 impl World {
-    /// Grains by themselves in a field; `mean_diameter` is d, m.
+    /// A world of grains in a field, without other bodies. `mean_diameter` is d, m.
     pub fn of(grains: Grains, gravity: Gravity, mean_diameter: f64) -> Self {
         Self {
             grains,
@@ -63,7 +63,7 @@ impl World {
         }
     }
 
-    /// Checks its grains and motions, how its gravity turns, and its borders.
+    /// Checks the grains and motions, the rotation of gravity, and the borders.
     pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
         self.grains.validate()?;
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
@@ -79,12 +79,12 @@ impl World {
         periodic.check(boundaries, fixed_discs, motions, gravity, physics, lengths)
     }
 
-    /// True where anything can move that no grain moves.
+    /// True if any fixed disc or boundary can move.
     pub fn has_motion(&self) -> bool {
         !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
     }
 
-    /// The shortest way between two places that are apart by `offset`, m: across periodic borders where there are
+    /// The shortest equivalent of the vector `offset` between two places, m: across periodic borders if there are
     /// any.
     #[inline(always)]
     pub(crate) fn shortest(&self, offset: DVec2) -> DVec2 {
@@ -94,16 +94,16 @@ impl World {
         }
     }
 
-    /// How fast the image of grain `j` goes that is nearest to grain `i`, beside grain `j` itself, m/s along x; 0
-    /// where no border shears.
+    /// Speed along x of the image of grain `j` nearest to grain `i`, relative to grain `j`, m/s; 0 without sheared
+    /// borders.
     #[inline]
     pub(crate) fn speed_of_image(&self, i: usize, j: usize) -> f64 {
         let places = &self.grains.positions;
         self.periodic.map_or(0.0, |periodic| periodic.speed_of_image(places[i] - places[j]))
     }
 
-    /// Brings all discs back into the cell, where there is one. Gives the work that this did on grains, J: where
-    /// borders shear, velocities change with the places.
+    /// Brings all discs back into the periodic cell, if there is one. Returns the work done on grains, J: crossing a
+    /// sheared border changes a grain's velocity.
     pub(crate) fn wrap(&mut self) -> f64 {
         let Some(periodic) = self.periodic else { return 0.0 };
         let mut work = 0.0;
@@ -129,18 +129,17 @@ impl World {
     }
 }
 
-/// The physics that a scene needs. A step is compiled for just that.
+/// The physics that a scene needs. Steps are compiled separately for each combination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
-    /// 1 (all on the x axis) or 2.
+    /// Number of axes: 1 (all on the x axis) or 2.
     pub axes: u8,
-    /// True where contacts carry tangential impulses.
+    /// True if contacts carry tangential impulses.
     pub friction: bool,
-    /// True where grains turn. Without friction nothing changes a disc's spin, so this asks for
-    /// friction.
+    /// True if grains turn. Requires friction, because without friction nothing changes a disc's spin.
     pub rotation: bool,
-    /// True where contacts can pull.
+    /// True if contacts can pull.
     pub cohesion: bool,
 }
 

@@ -1,4 +1,4 @@
-//! How bodies go that no grain moves: their place over time, and the speed of a surface that goes round them.
+//! Prescribed and driven motion of fixed discs and boundaries, and surface speeds such as a conveyor belt's.
 
 use std::f64::consts::TAU;
 
@@ -11,107 +11,107 @@ use crate::world::Periodic;
 
 /// Boundaries and fixed discs that move together.
 ///
-/// Its state is in itself: as it goes, `elapsed_secs` grows, and what is left to go shrinks.
+/// It carries its own state: `elapsed_secs` grows and the remaining travel shrinks as the bodies move.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// The boundaries, by their numbers from 0.
+    /// Indices of the boundaries, from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub boundaries: Vec<usize>,
-    /// The fixed discs, by their numbers from 0.
+    /// Indices of the fixed discs, from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed_discs: Vec<usize>,
-    /// Where they go. Without it they stay where they are.
+    /// Prescribed course. Without it the bodies stay at their places.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<MotionCourse>,
-    /// What force moves them besides, if one does.
+    /// Additional motion by a force, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
-    /// How fast a surface goes round them that leaves their shape as it is, as the belt of a conveyor does, m/s:
-    /// positive along the outward normal turned by +90°, which is anticlockwise round a disc or a polygon.
+    /// Speed of the surface along itself, m/s, with the shape at rest, as for a conveyor belt. Positive along the
+    /// outward normal turned by +90°, which is anticlockwise around a disc or a polygon.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub surface_speed: f64,
-    /// How long they have been going, s.
+    /// Time since the motion began, s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub elapsed_secs: f64,
-    /// By how much they have turned since then, rad, positive anticlockwise.
+    /// Rotation since then, rad, positive anticlockwise.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub turned: f64,
 }
 
-/// Where bodies go over time, from the places at which they are listed.
+/// Prescribed course over time, relative to the listed places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum MotionCourse {
-    /// Straight on.
+    /// Straight line at constant speed.
     Straight {
-        /// Along which vector; its length means nothing.
+        /// Direction of the motion, of any length.
         direction: DVec2,
-        /// m/s along it.
+        /// Speed along it, m/s.
         speed: f64,
-        /// How far they have still to go, m; without end where none is given.
+        /// Remaining distance, m; unlimited if not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         travel: Option<f64>,
     },
-    /// Round a pivot.
+    /// Rotation about a pivot at constant rate.
     Rotation {
-        /// m.
+        /// Pivot, m.
         pivot: DVec2,
-        /// rad/s, positive anticlockwise.
+        /// Rate, rad/s, positive anticlockwise.
         rate: f64,
-        /// By how much they have still to turn, rad; without end where none is given.
+        /// Remaining angle, rad; unlimited if not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         travel: Option<f64>,
     },
-    /// To and fro: amplitude · (sin(2π·frequency·t + phase) − sin(phase)).
+    /// Oscillation: amplitude · (sin(2π·frequency·t + phase) − sin(phase)).
     Sine {
-        /// Furthest from the middle, m.
+        /// Amplitude, m.
         amplitude: DVec2,
-        /// Hz.
+        /// Frequency, Hz.
         frequency_hz: f64,
-        /// rad.
+        /// Phase, rad.
         #[serde(default, skip_serializing_if = "is_zero")]
         phase: f64,
     },
-    /// To and fro round a pivot, by an angle that is such a sine.
+    /// Oscillation about a pivot, with the angle of [`MotionCourse::Sine`].
     Swing {
-        /// m.
+        /// Pivot, m.
         pivot: DVec2,
-        /// Furthest from the middle, rad.
+        /// Amplitude, rad.
         amplitude: f64,
-        /// Hz.
+        /// Frequency, Hz.
         frequency_hz: f64,
-        /// rad.
+        /// Phase, rad.
         #[serde(default, skip_serializing_if = "is_zero")]
         phase: f64,
     },
-    /// Through places at times, evenly from one to the next; before the first and after the last they stay.
+    /// Displacement, piecewise linear between the rows of a table; constant before the first and after the last.
     Table {
-        /// Rising, s.
+        /// Times in increasing order, s.
         times_secs: Vec<f64>,
-        /// One a time, m: how they lie then against how they lie at the others.
+        /// One displacement per time, m. Only their differences matter.
         offsets: Vec<DVec2>,
     },
-    /// Through angles at times, likewise, round a pivot.
+    /// Rotation about a pivot, with the angle piecewise linear between the rows of a table.
     AngleTable {
-        /// m.
+        /// Pivot, m.
         pivot: DVec2,
-        /// Rising, s.
+        /// Times in increasing order, s.
         times_secs: Vec<f64>,
-        /// One a time, rad.
+        /// One angle per time, rad.
         angles: Vec<f64>,
     },
 }
 
 impl Motion {
-    /// How they go in the next `secs` by their course.
+    /// Mean velocity prescribed by the course for the next `secs`.
     pub(crate) fn velocity_in(&self, secs: f64) -> RigidVelocity {
         let course = self.course.as_ref();
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
     }
 
-    /// The velocity from which the course goes over smoothly into that of the next `secs`: of a sine the mean of the
-    /// `secs` before. Other courses have jumps alone, and a jump of a wall's velocity strikes the grains.
+    /// The velocity from which the course passes smoothly to that of the next `secs`: for a sine, the mean over the
+    /// `secs` before. Other courses change velocity only by jumps, and a jump of a wall's velocity strikes the grains.
     pub(crate) fn velocity_before(&self, secs: f64) -> RigidVelocity {
         match &self.course {
             Some(course @ (MotionCourse::Sine { .. } | MotionCourse::Swing { .. })) => {
@@ -121,24 +121,24 @@ impl Motion {
         }
     }
 
-    /// A vector along which they go, if they go straight on in such a step; of any length.
+    /// A vector, of any length, along which the bodies move in a step, if they move straight.
     pub(crate) fn direction(&self, velocity: &RigidVelocity) -> Option<DVec2> {
         match (&self.course, &self.drive) {
             (None, Some(drive)) => Some(drive.direction),
             (Some(MotionCourse::Straight { direction, .. }), None) => Some(*direction),
             (Some(MotionCourse::Sine { amplitude, .. }), None) => Some(*amplitude),
-            // What goes across its drive rubs, even while it stands still.
+            // Motion across the drive rubs, even while the drive is at rest.
             (Some(_), Some(_)) => None,
             _ => (velocity.spin == 0.0).then_some(velocity.velocity),
         }
     }
 
-    /// True where they turn round a pivot.
+    /// True if the bodies turn about a pivot.
     pub(super) fn turns(&self) -> bool {
         self.course.as_ref().is_some_and(|course| course.pivot().is_some())
     }
 
-    /// True where a course along a line, or a force, leads them along an axis: x is 0, y is 1.
+    /// True if a straight course or a force moves the bodies along an axis: 0 is x, 1 is y.
     pub(super) fn goes_along(&self, axis: usize) -> bool {
         self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0)
             || match &self.course {
@@ -151,7 +151,7 @@ impl Motion {
             }
     }
 
-    /// Takes note that they have gone on for `secs`, by `carry`.
+    /// Advances the state by `secs`, in which the bodies moved by `carry`.
     pub(crate) fn advance(&mut self, secs: f64, carry: &Carry) {
         self.elapsed_secs += secs;
         self.turned += carry.angle;
@@ -169,7 +169,7 @@ impl Motion {
 }
 
 impl MotionCourse {
-    /// What it goes round, m.
+    /// The pivot, m, of a course that turns.
     pub(super) fn pivot(&self) -> Option<DVec2> {
         match self {
             Self::Rotation { pivot, .. }
@@ -179,7 +179,7 @@ impl MotionCourse {
         }
     }
 
-    /// The mean velocity from `elapsed` on, for `secs`.
+    /// The mean velocity from time `elapsed` over the next `secs`.
     fn velocity_in(&self, elapsed: f64, secs: f64) -> RigidVelocity {
         let times = [elapsed, elapsed + secs];
         match self {
@@ -209,12 +209,12 @@ impl MotionCourse {
     }
 }
 
-/// A speed, or what of it comes to the end of a way within `secs`. Units go with those of the way.
+/// A speed, reduced so that it covers no more than the remaining travel in `secs`. Units follow those of the travel.
 pub(super) fn within(speed: f64, left: Option<f64>, secs: f64) -> f64 {
     left.map_or(speed, |left| speed.signum() * speed.abs().min(left / secs))
 }
 
-/// The unit vector at an angle, rad, with the same bits on every machine.
+/// The unit vector at an angle (rad), with the same bits on every machine.
 pub(crate) fn direction(angle: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(angle);
     DVec2::new(cos, sin)
@@ -226,8 +226,8 @@ fn sine_rate(frequency_hz: f64, phase: f64, times: [f64; 2], secs: f64) -> f64 {
     (to - from) / secs
 }
 
-/// The value of a table at a time: even between its rows, and beyond them that of the nearest. The times
-/// rise, and there is at least one.
+/// The value of a table at a time: linear between rows, constant beyond them. The times increase, and there is at
+/// least one.
 pub(super) fn at_time<T>(times_secs: &[f64], values: &[T], time: f64) -> T
 where
     T: Copy + std::ops::Add<Output = T> + std::ops::Sub<Output = T>,
@@ -241,35 +241,36 @@ where
     values[before] + part * (values[next] - values[before])
 }
 
-/// What drives the bodies of a motion along an axis, and what they have against it. Weight is no part of it.
+/// A force or pressure that moves the bodies of a motion along an axis, with their mass and damping. Weight does not
+/// act on it.
 ///
-/// Its state is in itself: `speed` is that of the end of the last step.
+/// It carries its own state: `speed` is the speed at the end of the last step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
-    /// Along which vector; its length means nothing.
+    /// Direction, of any length.
     pub direction: DVec2,
-    /// N along it.
+    /// Force along the direction, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
-    /// In place of a force: N along it for each m of `width`.
+    /// Alternative to `force`: N along the direction per m of `width`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<f64>,
-    /// What the pressure acts on, m; the period across it where borders are periodic, unless it is given.
+    /// Width that the pressure acts on, m. Default: the period across the direction, if borders are periodic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Of all bodies of the motion together, kg.
+    /// Total mass of the bodies of the motion, kg.
     pub mass: f64,
-    /// Force against the speed, kg/s.
+    /// Damping force per speed, kg/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damping: f64,
-    /// m/s along the direction.
+    /// Speed along the direction, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed: f64,
 }
 
 impl Drive {
-    /// The direction, of length 1.
+    /// Unit vector of the direction.
     pub fn axis(&self) -> DVec2 {
         self.direction.normalize_or_zero()
     }
@@ -280,7 +281,8 @@ impl Drive {
         self.force.unwrap_or_else(|| self.pressure.unwrap_or(0.0) * width.unwrap_or(0.0))
     }
 
-    /// The period along the one axis, m, where borders wrap along that and the direction is along the other.
+    /// The period, m, along the axis perpendicular to the direction, if those borders wrap and the direction is along
+    /// an axis.
     pub(super) fn period_across(&self, periodic: Option<Periodic>) -> Option<f64> {
         let [width, height] = periodic?.periods();
         let DVec2 { x, y } = self.direction;
@@ -293,31 +295,31 @@ impl Drive {
         }
     }
 
-    /// ½mv², J.
+    /// Kinetic energy ½mv², J.
     pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.mass * self.speed * self.speed
     }
 }
 
-/// How a body goes during a step: straight on, or round a pivot.
+/// Velocity of a rigid body during a step: a translation, or a rotation about a pivot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RigidVelocity {
-    /// m/s; none of a body that turns.
+    /// Translation velocity, m/s; zero if the body turns.
     pub velocity: DVec2,
-    /// rad/s, positive anticlockwise.
+    /// Angular velocity, rad/s, positive anticlockwise.
     pub spin: f64,
-    /// m.
+    /// Pivot, m.
     pub pivot: DVec2,
 }
 
-/// A way of a rigid body.
+/// Displacement of a rigid body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carry {
-    /// m; none of a body that turns.
+    /// Translation, m; zero if the body turns.
     pub by: DVec2,
-    /// rad.
+    /// Rotation angle, rad.
     pub angle: f64,
-    /// m.
+    /// Pivot, m.
     pub pivot: DVec2,
     /// (cos, sin) of the angle.
     turn: DVec2,
@@ -340,21 +342,20 @@ impl RigidVelocity {
         if self.spin == 0.0 { self.velocity } else { self.spin * (place - self.pivot).perp() }
     }
 
-    /// The mean velocity, m/s, that the point of the body which is at `place` has in the next `secs`:
-    /// (R − 1)(c − p)/Δt where R is the rotation of the step.
+    /// The mean velocity, m/s, in the next `secs` of the body's point now at `place`: (R − 1)(c − p)/Δt, with R the
+    /// rotation of the step.
     #[inline]
     pub(crate) fn mean_from(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, -1.0)
     }
 
-    /// The mean velocity, m/s, that the point of the body which is at `place` has had in the last `secs`:
-    /// (1 − R⁻¹)(c − p)/Δt.
+    /// The mean velocity, m/s, in the last `secs` of the body's point now at `place`: (1 − R⁻¹)(c − p)/Δt.
     #[inline]
     pub(crate) fn mean_until(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, 1.0)
     }
 
-    /// The mean velocity of a point, with that sign of the part along the pivot's direction.
+    /// The mean velocity of a point, with `sign` for the component towards or away from the pivot.
     fn mean(&self, place: DVec2, secs: f64, sign: f64) -> DVec2 {
         if self.spin == 0.0 {
             return self.velocity;
@@ -376,7 +377,7 @@ impl RigidVelocity {
 }
 
 impl Carry {
-    /// Where it brings a point of the body.
+    /// The new position of a point of the body.
     pub(crate) fn place(&self, place: DVec2) -> DVec2 {
         if self.angle == 0.0 {
             place + self.by
@@ -385,17 +386,17 @@ impl Carry {
         }
     }
 
-    /// What it makes of a direction.
+    /// A direction of the body after the displacement.
     pub(crate) fn turned(&self, direction: DVec2) -> DVec2 {
         if self.angle == 0.0 { direction } else { self.turn.rotate(direction) }
     }
 
-    /// How far it brings any point at most that is no farther than `reach` from the pivot, m.
+    /// Longest displacement, m, of any point within `reach` of the pivot.
     pub(crate) fn longest_way(&self, reach: f64) -> f64 {
         self.by.length() + self.angle.abs() * reach
     }
 
-    /// True where it brings anything anywhere.
+    /// True if the displacement is not zero.
     pub(crate) fn goes(&self) -> bool {
         self.by != DVec2::ZERO || self.angle != 0.0
     }
@@ -415,7 +416,7 @@ mod tests {
         assert_eq!(at_time(&[1.0], &[7.0], 2.0), 7.0);
     }
 
-    /// Whatever the steps, the way adds up to the course's own.
+    /// The displacements of steps of any length add up to the course's.
     #[test]
     fn steps_add_up_to_the_course() {
         let pivot = DVec2::new(1.0, -2.0);

@@ -1,4 +1,4 @@
-//! Whether motions of a scene, and what drives them, are such as bodies can have.
+//! Checks of a scene's motions and drives.
 
 use std::fmt::Display;
 
@@ -7,8 +7,7 @@ use glam::DVec2;
 use super::{Boundary, Drive, Motion, MotionCourse, Periodic};
 use crate::error::{self, Error, Result};
 
-/// Checks motions against the boundaries, the number of fixed discs, the number of axes and the borders that they are
-/// for.
+/// Checks motions against the scene's boundaries, number of fixed discs, number of axes and periodic borders.
 pub(super) fn check_motions(
     motions: &[Motion],
     boundaries: &[Boundary],
@@ -51,9 +50,9 @@ pub(super) fn check_motions(
     Ok(())
 }
 
-/// Checks that what drives a motion goes with its course.
+/// Checks that the drive of a motion suits its course.
 fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
-    /// Cosine of two directions that are perpendicular but for rounding.
+    /// Largest cosine of two directions that count as perpendicular, which allows for rounding.
     const PERPENDICULAR: f64 = 1e-9;
     let Some(drive) = &motion.drive else { return Ok(()) };
     drive.check(&format!("{field}.drive"), periodic)?;
@@ -124,7 +123,7 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
     }
 }
 
-/// Checks the times of a table, and its values, of which it is known whether each is finite.
+/// Checks the times of a table and the finiteness of its values.
 pub(super) fn check_table(
     field: &str,
     times_secs: &[f64],
@@ -149,7 +148,7 @@ pub(super) fn check_table(
 }
 
 impl Drive {
-    /// Checks its numbers; `field` is what users call it.
+    /// Checks the numbers of a drive; `field` is its name in messages.
     fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
         let refuse = |name: &str, found: String, allowed: &str| {
             Err(Error::value(format!("{field}.{name}"), found, allowed))

@@ -1,11 +1,11 @@
-//! The numbers of the contact laws and the time step, which may change between any two steps.
+//! Parameters of the contact laws and the time step. They may change between any two steps.
 
 use crate::error::{Error, Result};
 use crate::number::is_zero;
 use crate::setting::{settings, words};
 
 words! {
-    /// Which part of the normal force bounds friction (the paper leaves both readings open).
+    /// The part of the normal force that bounds friction (the paper allows both readings).
     #[derive(Default)]
     pub enum FrictionCone {
         #[default]
@@ -14,28 +14,29 @@ words! {
     }
 }
 
-/// δ_c where none is given, in mean diameters.
+/// Default of δ_c, in mean diameters.
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
-/// The touch tolerance where none is given, in mean diameters: the least with which discs that are written as touching do, and
-/// a pyramid of logs in equilibrium stands.
+/// Default of the touch tolerance, in mean diameters. The smallest at which discs written as touching do touch and a
+/// pyramid of logs in equilibrium stands.
 const TOUCH_TOLERANCE: f64 = 1e-5;
 
-/// More substeps than this are a mistake: a single step of a pile would take many seconds.
+/// Limit for substeps. With more, a single step of a pile would take many seconds.
 pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 
-/// More steps than this take months, of the smallest scene.
+/// Limit for the steps of a run. More steps take months even in the smallest scene.
 const MOST_STEPS: f64 = 1e12;
-/// Below this a time step is what is odd about too many steps.
+/// Time steps below this are named as the cause of too many steps.
 const SMALL_TIME_STEP_SECS: f64 = 1e-7;
 
 settings! {
-    /// Numbers that may change between any two steps. Plain data, checked where a simulation takes them on.
+    /// Parameters that may change between any two steps. Plain data, checked when a simulation takes them over.
     ///
-    /// The default is the paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
+    /// The default is the paper's scheme at Δt = 1e-3 s, without cohesion, restitution or friction.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
         /// Bond number: C₀ = Bond · m_ij · a (paper eq. 10), where a is [`Parameters::cohesion_acceleration`].
-        bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force divided by the effective weight of a contact, at least 0", {
+        bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force divided by the effective weight of a \
+            contact, at least 0", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
@@ -55,7 +56,7 @@ settings! {
             holds: |value| value >= 0.0 && value.is_finite(),
             needs: Needs::Cohesion,
         }
-        /// Δt, s.
+        /// Time step Δt, s.
         time_step_secs: f64 = 1e-3, "dt" ("SECONDS"), "Time step Δt, seconds", {
             allowed: "a finite number of seconds > 0",
             holds: |value| value > 0.0 && value.is_finite(),
@@ -70,7 +71,7 @@ settings! {
                 logarithmic: true,
             }),
         }
-        /// ρ, 0 … 1.
+        /// Restitution ρ, 0 … 1.
         restitution: f64 = 0.0, "rho" ("RHO"), "Restitution, 0 to 1", {
             allowed: "between 0 and 1",
             holds: |value| (0.0..=1.0).contains(&value),
@@ -81,7 +82,7 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// μ.
+        /// Friction coefficient μ.
         friction: f64 = 0.0, "mu" ("MU"), "Friction, at least 0", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
@@ -102,16 +103,17 @@ settings! {
         }
         /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
         ///
-        /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step
-        /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
+        /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step then has no
+        /// solution. Bounces slower than about 2 g·Δt are too small to be seen.
         #[serde(default)]
         restitution_threshold: f64 = 0.0, "restitution-threshold" ("X"),
-            "Contacts that close slower than this many g·dt do not bounce; the paper has 0; with 2 nearly every step has a solution", {
+            "Contacts that close slower than this many g·dt do not bounce; the paper has 0; with 2 nearly every \
+                step has a solution", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
-        /// δ_c of the law `range`, in mean diameters. Within the largest no third grain fits between
-        /// two bonded ones.
+        /// Debonding distance δ_c of the law `range`, in mean diameters. The upper limit leaves no room for a third
+        /// grain between two bonded ones.
         #[serde(default = "default_debonding_distance")]
         debonding_distance: f64 = DEBONDING_DISTANCE, "debonding-distance" ("D"),
             "Distance by which a bond of the stepper range opens before it breaks, in mean diameters", {
@@ -128,10 +130,12 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// In mean diameters. Within the largest no third grain fits between two bonded ones.
+        /// Touch tolerance, in mean diameters. The upper limit leaves no room for a third grain between two bonded
+        /// ones.
         #[serde(default = "default_touch_tolerance")]
         touch_tolerance: f64 = TOUCH_TOLERANCE, "touch-tolerance" ("D"),
-            "Largest gap at which grains touch, and cohere if they have cohesion, in mean diameters; they push each other only at gap 0; the paper has 0", {
+            "Largest gap at which grains touch, and cohere if they have cohesion, in mean diameters; they push each \
+                other only at gap 0; the paper has 0", {
             allowed: "between 0 and 0.1 diameters",
             holds: |value| (0.0..=0.1).contains(&value),
             control: Some(Control {
@@ -145,7 +149,8 @@ settings! {
         }
         #[serde(default, skip_serializing_if = "is_zero")]
         tilt: f64 = 0.0, "tilt" ("DEGREES"),
-            "Angle by which the gravity of the scene is turned, degrees; a positive angle turns downward gravity to the right", {
+            "Angle by which the gravity of the scene is turned, degrees; a positive angle turns downward gravity to \
+                the right", {
             allowed: "between -180 and 180 degrees",
             holds: |value| (-180.0..=180.0).contains(&value),
             needs: Needs::Direction,
@@ -167,14 +172,15 @@ settings! {
                 label: "k, stiffness",
                 symbol: "k",
                 unit: "N/m",
-                hint: "Force per overlap; a softer bond takes more work to break. At 0 the stiffness is chosen so that the weight of the pile makes an overlap of 1e-3 d.",
+                hint: "Force per overlap; a softer bond takes more work to break. At 0 the stiffness is chosen so \
+                    that the weight of the pile makes an overlap of 1e-3 d.",
                 range: [0.0, 1e5],
                 logarithmic: true,
                 ..Control::PLAIN
             }),
         }
-        /// ζ of the stepper `dem`: of a contact by itself, in critical damping; 0 takes that which ρ asks for.
-        /// Nothing is lost by that: no damping is ρ = 1.
+        /// Damping ratio ζ of a single contact of the stepper `dem`, relative to critical damping. 0 means the ratio
+        /// that follows from ρ; a contact without damping is still possible with ρ = 1.
         #[serde(default, skip_serializing_if = "is_zero")]
         damping_ratio: f64 = 0.0, "damping-ratio" ("ZETA"),
             "Damping ratio of the contacts of the stepper dem; 0 derives it from rho", {
@@ -196,7 +202,8 @@ settings! {
             control: Some(Control {
                 label: "Substeps",
                 symbol: "substeps",
-                hint: "Substeps per step; 0 means 4 for tgs-soft, 1 for avbd, and for dem the number that keeps it stable.",
+                hint: "Substeps per step; 0 means 4 for tgs-soft, 1 for avbd, and for dem the number that keeps it \
+                    stable.",
                 range: [0.0, 100.0],
                 ..Control::PLAIN
             }),
@@ -213,20 +220,20 @@ fn default_debonding_distance() -> f64 {
 }
 
 impl Parameters {
-    /// The same numbers with another Δt, s.
+    /// The same parameters with another Δt, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { time_step_secs, ..self }
     }
 
-    /// Steps that a simulated time takes.
+    /// Number of steps in a simulated time (s).
     pub fn steps_in(&self, secs: f64) -> u64 {
         (secs / self.time_step_secs).round() as u64
     }
 
-    /// Checks that a simulated time (s) takes no more steps than anyone can wait for.
+    /// Checks that a simulated time (s) takes a practicable number of steps.
     ///
     /// # Errors
-    /// Names `field`, which says the time, or Δt where that is the odd one of the two.
+    /// Names `field`, the option that sets the time, or Δt if that is unusually small.
     pub fn check_steps(&self, field: &str, secs: f64) -> Result<()> {
         let steps = secs / self.time_step_secs;
         if steps <= MOST_STEPS {
@@ -243,13 +250,13 @@ impl Parameters {
         })
     }
 
-    /// ρ v_n^{n−1}, m/s, of a contact with that normal velocity at the beginning of the step.
+    /// ρ v_n^{n−1}, m/s, of a contact with this normal velocity at the beginning of the step.
     pub fn restitution_velocity(&self, normal_velocity: f64, gravity_magnitude: f64) -> f64 {
         let least = self.restitution_threshold * gravity_magnitude * self.time_step_secs;
         if normal_velocity.abs() < least { 0.0 } else { self.restitution * normal_velocity }
     }
 
-    /// a in C₀ = Bond · m_ij · a, m/s²: the parameter where it is given, else the scene's gravity.
+    /// a in C₀ = Bond · m_ij · a, m/s²: the parameter if given, otherwise the scene's gravity.
     pub fn cohesion_acceleration(&self, gravity_magnitude: f64) -> f64 {
         match self.bond_acceleration {
             0.0 => gravity_magnitude,
@@ -257,7 +264,7 @@ impl Parameters {
         }
     }
 
-    /// Acceleration that turns lengths into speeds, m/s²: the scene's gravity, or a without gravity.
+    /// Acceleration that relates lengths and speeds, m/s²: the scene's gravity, or a in scenes without gravity.
     pub fn accelerating(&self, gravity_magnitude: f64) -> f64 {
         match gravity_magnitude {
             0.0 => self.bond_acceleration,
@@ -265,7 +272,7 @@ impl Parameters {
         }
     }
 
-    /// Bond·a·Δt/√(g·d), dimensionless: Bond·Δt/√(d/g) if a is g (paper §3.3). Without gravity, a replaces g.
+    /// Dimensionless Bond·a·Δt/√(g·d), which is Bond·Δt/√(d/g) if a is g (paper §3.3). Without gravity, a replaces g.
     pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
         let g = self.accelerating(gravity_magnitude);
         let ratio = match self.bond_acceleration {

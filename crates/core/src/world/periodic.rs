@@ -1,45 +1,45 @@
-//! A cell whose opposite borders are one and the same line: what leaves it on one side comes back on the other.
+//! A periodic cell, whose opposite borders are identified: a grain that leaves on one side re-enters on the other.
 //!
-//! **Borders that shear** are layers of cells that slide over one another, so that what fills them flows without walls
-//! (A. W. Lees, S. F. Edwards, *The computer study of transport processes under extreme conditions*, J. Phys. C 5, 1972).
+//! **Sheared borders** are layers of cells that slide over one another, so that the grains flow without walls (A. W.
+//! Lees, S. F. Edwards, *The computer study of transport processes under extreme conditions*, J. Phys. C 5, 1972).
 //!
-//! The cell that is k heights above this one is off it by k·s along x, and goes along x with k·U relative to it:
+//! The cell k heights above this one is shifted by k·s along x, and moves along x at k·U relative to it:
 //!
-//! > U = γ̇ L_y,  ds/dt = U,  and s is the same as s − L_x.
+//! > U = γ̇ L_y,  ds/dt = U,  and s is equivalent to s − L_x.
 //!
-//! So the image of a grain there is at x + (k s, k L_y) and goes with v + (k U, 0), and a grain that leaves through the
-//! upper border comes back as that of its images that the cell below has: its x lessened by s, and its v_x by U. No
-//! place is marked by the borders: wherever they are drawn, the flow is the same but for the velocity that is added.
+//! So the image of a grain in that cell is at x + (k s, k L_y) and has velocity v + (k U, 0). A grain that leaves
+//! through the upper border re-enters as its image from the cell below: its x is reduced by s and its v_x by U. The
+//! position of the borders does not matter: moving them only adds a constant velocity to the flow.
 //!
-//! **Offsets** are taken upright, their whole heights with the lean of those undone, and then each axis wraps by itself.
-//! The image so found is the nearest one for all that is less than half a height apart, and so for all that touches.
+//! **Offsets** are first made upright, by undoing the shift of their whole heights, and then each axis wraps
+//! separately. The result is the nearest image for any pair less than half a height apart, and so for any touching
+//! pair.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::number::is_zero;
 
-/// Borders that wrap: left and right, below and above, or both. All that a scene has is there again a period to either
-/// side, without end.
+/// Periodic borders: left and right, below and above, or both. The scene repeats without end with that period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Periodic {
-    /// x of the left and of the right border, m; none where they do not wrap.
+    /// x of the left and the right border, m; `None` if they do not wrap.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x: Option<[f64; 2]>,
-    /// y of the lower and of the upper border, m; none where they do not wrap.
+    /// y of the lower and the upper border, m; `None` if they do not wrap.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub y: Option<[f64; 2]>,
-    /// γ̇, 1/s: the cell above goes along x with γ̇ times the height of a cell, relative to this one.
+    /// Shear rate γ̇, 1/s: the cell above moves along x at γ̇ times the cell height, relative to this one.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shear_rate: f64,
-    /// By how much the cell above is off this one along x now, m; up to a width to either side at the start.
+    /// Present shift of the cell above along x, m; at most one width to either side at the start.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shift: f64,
 }
 
 impl Periodic {
-    /// Left and right borders alone, m.
+    /// Only left and right borders, m.
     pub const fn along_x(x: [f64; 2]) -> Self {
         Self { x: Some(x), y: None, shear_rate: 0.0, shift: 0.0 }
     }
@@ -49,7 +49,7 @@ impl Periodic {
         Self { x: Some(x), y: Some(y), shear_rate: 0.0, shift: 0.0 }
     }
 
-    /// Width and height of the cell, m, each where its borders wrap.
+    /// Width and height of the cell, m, each if its borders wrap.
     pub fn periods(self) -> [Option<f64>; 2] {
         [self.x, self.y].map(|borders| borders.map(period))
     }
@@ -59,15 +59,15 @@ impl Periodic {
         DVec2::from(self.periods().map(|period| if period.is_some() { 1.0 } else { 0.0 }))
     }
 
-    /// Corners of an upright box, m, with the borders in place of its sides along each axis that wraps.
+    /// Corners of an upright box, m, with the borders replacing its sides along each axis that wraps.
     pub fn borders_or(self, [low, high]: [DVec2; 2]) -> [DVec2; 2] {
         let [left, right] = self.x.unwrap_or([low.x, high.x]);
         let [below, above] = self.y.unwrap_or([low.y, high.y]);
         [DVec2::new(left, below), DVec2::new(right, above)]
     }
 
-    /// The image of a place that lies in the cell, the left and the lower border included, m. What is there stays to the
-    /// last bit.
+    /// The image of a place in the cell, m; the left and the lower border belong to the cell. A place already in the
+    /// cell keeps all its bits.
     pub fn wrap(self, place: DVec2) -> DVec2 {
         let x = match self.is_sheared() {
             true => place.x - self.lean(self.cells_above(place.y)),
@@ -76,22 +76,23 @@ impl Periodic {
         DVec2::new(wrapped(self.x, x), wrapped(self.y, place.y))
     }
 
-    /// The shortest way between two places that are apart by `offset`, or by it and some periods, m. One that is
-    /// shorter than half a period stays to the last bit.
+    /// The shortest vector that equals `offset` up to whole periods, m. An offset below half a period keeps all its
+    /// bits.
     #[inline]
     pub fn shortest(self, offset: DVec2) -> DVec2 {
         let offset = if self.is_sheared() { self.upright(offset) } else { offset };
         DVec2::new(shortest(self.x, offset.x), shortest(self.y, offset.y))
     }
 
-    /// How many whole periods along each axis the shortest way leaves out of an offset, m; 0 where nothing wraps.
+    /// Number of whole periods along each axis by which `offset` (m) exceeds the shortest vector; 0 along axes that
+    /// do not wrap.
     pub(crate) fn whole(self, offset: DVec2) -> DVec2 {
         let offset = if self.is_sheared() { self.upright(offset) } else { offset };
         DVec2::new(periods_in(self.x, offset.x), periods_in(self.y, offset.y))
     }
 
-    /// By how much a shape is to be moved (m) for its other images that reach into the cell, where it reaches from
-    /// one corner of an upright box to the other; a shape that lies in the cell but for rounding has none.
+    /// Displacements (m) to the other images of a shape that reach into the cell, given the corners of the shape's
+    /// bounding box. A shape inside the cell, up to rounding, has none.
     pub fn images(self, [low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
         let middle = 0.5 * (low.x + high.x);
         let along_y = reaching(self.y, [low.y, high.y]).into_iter().flatten();
@@ -103,7 +104,7 @@ impl Periodic {
         all.filter(|by| *by != DVec2::ZERO)
     }
 
-    /// By how much a place is to be moved (m) for itself and its images a period to either side.
+    /// Displacements (m) of a place to itself and to its images one period to either side.
     pub fn around(self) -> impl Iterator<Item = DVec2> {
         let [along_x, along_y] =
             self.periods().map(|period| [Some(0.0), period, period.map(|by| -by)]);
@@ -113,7 +114,7 @@ impl Periodic {
         })
     }
 
-    /// The image of a place that is nearest to another one, m.
+    /// The image of `place` nearest to `other`, m.
     pub fn near(self, place: DVec2, other: DVec2) -> DVec2 {
         if self.is_sheared() {
             return other - self.shortest(other - place);
@@ -133,7 +134,7 @@ pub(super) fn period([low, high]: [f64; 2]) -> f64 {
     high - low
 }
 
-/// Whole periods in an offset, to the nearest; 0 where nothing wraps.
+/// Number of whole periods in an offset, rounded to the nearest; 0 if the axis does not wrap.
 #[inline]
 pub(super) fn periods_in(borders: Option<[f64; 2]>, offset: f64) -> f64 {
     borders.map_or(0.0, |borders| (offset / period(borders)).round())
@@ -144,7 +145,7 @@ pub(super) fn wrapped(borders: Option<[f64; 2]>, at: f64) -> f64 {
         return at;
     };
     let wrapped = at - (high - low) * ((at - low) / (high - low)).floor();
-    // Rounding may end on the upper border, which is the lower one. What is no number stays none.
+    // Rounding may give the upper border, which is the lower one. NaN stays NaN.
     if wrapped >= high || wrapped < low { low } else { wrapped }
 }
 
@@ -156,7 +157,8 @@ pub(super) fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
     })
 }
 
-/// Ways along an axis for what reaches so far: none, and those of its images that reach between the borders.
+/// Displacements along an axis to the images of an interval that overlap the cell, starting with 0 for the interval
+/// itself.
 fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3] {
     let over = borders.map_or([None; 2], |[low, high]| {
         let period = high - low;
@@ -167,54 +169,53 @@ fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3]
 }
 
 impl Periodic {
-    /// True where the cells above and below are not straight above and below, or do not stay there.
+    /// True if the cells above and below are shifted, or are moving.
     #[inline(always)]
     pub fn is_sheared(self) -> bool {
         self.shear_rate != 0.0 || self.shift != 0.0
     }
 
-    /// U, m/s.
+    /// Border speed U, m/s.
     pub fn border_speed(self) -> f64 {
         self.shear_rate * self.y.map_or(0.0, period)
     }
 
-    /// How fast the nearest image of a disc goes beside the disc itself, where another one is off the disc by
-    /// `offset` (m), m/s along x.
+    /// Speed along x, m/s, of a disc's nearest image relative to the disc, as seen by another disc at `offset` (m).
     #[inline]
     pub(crate) fn speed_of_image(self, offset: DVec2) -> f64 {
         self.border_speed() * periods_in(self.y, offset.y)
     }
 
-    /// Lets the cells slide for `secs`.
+    /// Advances the shift of the cells by `secs`.
     pub(crate) fn slide(&mut self, secs: f64) {
         if self.shear_rate != 0.0 {
             self.shift = shortest(self.x, self.shift + secs * self.border_speed());
         }
     }
 
-    /// An offset with the lean of its whole heights undone.
+    /// An offset without the shift of its whole heights.
     #[inline]
     pub(super) fn upright(self, offset: DVec2) -> DVec2 {
         DVec2::new(offset.x - self.lean(periods_in(self.y, offset.y)), offset.y)
     }
 
-    /// How many cells above this one a height is.
+    /// How many cells above this one the height `y` is.
     pub(super) fn cells_above(self, y: f64) -> f64 {
         periods_in(self.y, y - wrapped(self.y, y))
     }
 
-    /// How far the cell that many above this one is off it, m.
+    /// Shift of the cell that is `cells` above this one, m.
     #[inline]
     pub(super) fn lean(self, cells: f64) -> f64 {
         cells * self.shift
     }
 
-    /// The same of the cell that is so far (m) above this one.
+    /// Shift of the cell that is `height` (m) above this one, m.
     pub(super) fn lean_of(self, height: f64) -> f64 {
         self.lean(periods_in(self.y, height))
     }
 
-    /// The same, but for as many widths as bring what is about a place (its x, m) into the cell.
+    /// Like `lean_of`, reduced by whole widths so that a place at `x` (m) lands in the cell.
     pub(crate) fn lean_into_cell(self, x: f64, height: f64) -> f64 {
         let lean = self.lean_of(height);
         if lean == 0.0 { 0.0 } else { wrapped(self.x, x + lean) - x }
@@ -239,7 +240,7 @@ mod tests {
         }
         let inside = 0.123_456_789;
         assert_eq!(CELL.wrap(DVec2::new(inside, 0.0)).x.to_bits(), inside.to_bits());
-        // A hair left of the border is the right border but for rounding.
+        // A place within rounding of the left border is mapped to either border.
         let hair = CELL.wrap(DVec2::new(f64::from_bits((-0.3f64).to_bits() + 1), 0.0));
         assert!((-0.3..0.7).contains(&hair.x));
         assert!(CELL.wrap(DVec2::NAN).x.is_nan());
@@ -299,7 +300,7 @@ mod tests {
             assert!(cell.shift.abs() <= 0.5, "{}", cell.shift);
             for k in 0..200 {
                 let turn = f64::from(k) * 0.7;
-                // No farther than half a width: then it is the nearest of all images.
+                // Shorter than half a width, so it is the nearest of all images.
                 let short = 0.49 * (0.1 + 0.9 * f64::from(k) / 200.0) * DVec2::from_angle(turn);
                 for (by_x, by_y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-2.0, 1.0), (1.0, -2.0)] {
                     let image = DVec2::new(by_x + by_y * cell.shift, 2.0 * by_y);
@@ -327,9 +328,9 @@ mod tests {
                 assert!(found.distance(DVec2::from(*expected)) < 1e-12, "{found} {expected:?}");
             }
         };
-        // What is half below the cell is seen at the top of it, 0.4 on.
+        // A disc half below the cell appears at its top, shifted by 0.4.
         near(found(0.1, 2.05), &[[0.4, 2.0]]);
-        // There it straddles the right border.
+        // This one straddles the right border.
         near(found(0.25, 2.05), &[[0.4, 2.0], [-0.6, 2.0]]);
         near(found(0.5, 2.05), &[[-0.6, 2.0]]);
         near(found(0.5, 3.95), &[[-0.4, -2.0]]);

@@ -1,28 +1,28 @@
-//! Whether periodic borders go with what there is between them.
+//! Checks that periodic borders suit the bodies, boundaries and gravity of a scene.
 
 use glam::DVec2;
 
 use super::{Boundary, Gravity, Motion, Periodic, Physics};
 use crate::error::{Error, Result};
 
-/// Narrowest cell, in diameters of its largest disc: in a narrower one a disc and its images leave no room to pass.
+/// Narrowest cell, in diameters of its largest disc. In a narrower cell a disc and its images leave no room to pass.
 const LEAST_DIAMETERS: f64 = 3.0;
-/// How far apart surfaces can be that feel each other, in mean diameters: above the longest bond
+/// Largest surface distance of interacting discs, in mean diameters: above the longest bond
 /// ([`Parameters::debonding_distance`](super::Parameters)).
 const FELT_IN_DIAMETERS: f64 = 0.2;
 
 /// An axis along which borders wrap.
 #[derive(Clone, Copy)]
 struct Wrapping {
-    /// What users call its borders.
+    /// Name of its borders in messages.
     field: &'static str,
-    /// Along x: 0, along y: 1.
+    /// 0 for x, 1 for y.
     axis: usize,
     borders: [f64; 2],
 }
 
 impl Periodic {
-    /// Checks it against what there is in a world, of which the radius of the largest disc and d are given, m.
+    /// Checks the borders against the world; `lengths` are the radius of the largest disc and d, m.
     pub(crate) fn check(
         self,
         boundaries: &[Boundary],
@@ -53,7 +53,7 @@ impl Periodic {
         Ok(())
     }
 
-    /// Checks that there is nothing that borders which shear would tear, and all that they need.
+    /// Checks that sheared borders have finite rates, both axes, friction and rotation, and no fixed bodies.
     fn check_shear(self, fixed_bodies: usize, physics: Physics) -> Result<()> {
         let Self { shear_rate, shift, .. } = self;
         let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];
@@ -102,7 +102,7 @@ impl Wrapping {
         if !(low.is_finite() && high.is_finite() && period.is_finite()) {
             return Err(Error::value(self.field, found(), "two finite numbers of m"));
         }
-        // No two images of a disc are felt by the same other one.
+        // A disc must not interact with two images of the same other disc.
         let largest_diameter = 2.0 * largest_radius;
         let felt = FELT_IN_DIAMETERS * mean_diameter;
         let least = (LEAST_DIAMETERS * largest_diameter).max(2.0 * (largest_diameter + felt));

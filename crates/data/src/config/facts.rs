@@ -1,4 +1,4 @@
-//! Facts of a recording: all that its scene says, and all that was changed during the run.
+//! Facts about a recording: all values of its scene, and all changes during the run.
 
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
@@ -8,16 +8,16 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// What is in the tables themselves, or is of the recording.
+/// Values that are left out: they are in the tables, or concern the recording itself.
 const LEFT_OUT: [&str; 4] = ["grains", "fixed_discs", "source", "data"];
 
-/// What a fact about changes is called.
+/// Name of the fact that lists the changes.
 const CHANGES: &str = "changes";
 
-/// All that a scene says but for its discs, as facts of a recording, with the program's version.
+/// All values of a scene except its discs, as facts of a recording, with the program's version.
 ///
 /// # Errors
-/// Where it says something that JSON cannot.
+/// If a value cannot be written as JSON.
 pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
     let program = concat!("slump ", env!("CARGO_PKG_VERSION"));
     let mut facts = vec![("program".to_owned(), program.to_owned())];
@@ -35,8 +35,8 @@ pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
     Ok(RunFacts { facts })
 }
 
-/// The facts of a scene, and the changes of its settings during the run: the number of each step, its simulated time in
-/// seconds, and all settings from then on. Settings that stay the same are left out.
+/// The facts of a scene and the changes of its settings during the run. Each change has the number of its step, its
+/// simulated time in seconds, and the values of the changed settings from then on.
 ///
 /// # Errors
 /// As [`scene_facts`].
@@ -61,7 +61,7 @@ pub fn run_facts(scene: &Scene, changes: &[(u64, f64, Settings)]) -> Result<RunF
     Ok(run)
 }
 
-/// What something says, value by value.
+/// The values of serialisable data, by name.
 fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Json>> {
     let said = serde_json::to_value(something)
         .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;
@@ -74,13 +74,13 @@ fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Js
     Ok(values)
 }
 
-/// Settings with those that are off, which scene files leave out.
+/// All settings, including those that are off, which scene files leave out.
 fn all_settings(settings: &Settings) -> Json {
     let Settings { stepper, parameters, solver, remedies } = settings;
     json!({ "stepper": stepper, "parameters": parameters, "solver": solver, "remedies": remedies })
 }
 
-/// Adds a value by its name, or the values of a table by theirs behind it.
+/// Adds a value by its name. For a table, adds its values by dotted names.
 fn flatten(name: &str, value: &Json, values: &mut Map<String, Json>) {
     match value {
         Json::Object(table) => {
@@ -96,7 +96,7 @@ fn flatten(name: &str, value: &Json, values: &mut Map<String, Json>) {
 
 fn one_line(value: &Json) -> String {
     match value {
-        // A line of a comment is to stay one.
+        // Removes line breaks, because a fact must fit on one comment line.
         Json::String(text) => text.replace(char::is_control, " "),
         other => other.to_string(),
     }

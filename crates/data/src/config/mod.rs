@@ -1,4 +1,4 @@
-//! What a user asks of a run, as options, a scene file, a line of a study, or a saved run.
+//! The request for a run, as options, a scene file, a line of a study, or a saved run.
 
 mod facts;
 mod option_words;

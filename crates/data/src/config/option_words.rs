@@ -1,10 +1,10 @@
-//! Parsers of options that take one word of a list.
+//! Parsers of options whose value is a word of a list.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 
 use crate::setting::{Kind, Settable, Value, Word};
 
-/// The parser of a word, for options that are not settings.
+/// Parser of a word, for options that are not settings.
 pub fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
     let words = if let Kind::Word(words) = T::KIND { words } else { &[] };
     let said = |said: String| {

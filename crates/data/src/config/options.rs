@@ -1,5 +1,5 @@
-//! A [`Config`] as options of the command line, and as the flat table by the same names that studies and journals
-//! write; and what is wrong with a command line, in one sentence.
+//! A [`Config`] as options of the command line, and as the flat table with the same names in studies and journals. Also
+//! one-sentence messages for errors in a command line.
 
 use std::error::Error as _;
 use std::fmt;
@@ -18,7 +18,7 @@ use crate::setting::{About, Changes, Kind, Value};
 use crate::sim::Settings;
 
 impl Config {
-    /// The names of all fields, as command line and study files write them.
+    /// The names of all fields, as they appear on the command line and in study files.
     pub fn names() -> Vec<String> {
         Self::options().into_iter().map(|(name, _)| name).collect()
     }
@@ -31,7 +31,7 @@ impl Config {
         command.get_arguments().filter_map(named).collect()
     }
 
-    /// What the command line makes of these options, each a name and what is said of it.
+    /// Parses options, each a name and a value, as the command line does.
     ///
     /// ```
     /// use slump_data::config::Config;
@@ -44,7 +44,7 @@ impl Config {
     /// ```
     ///
     /// # Errors
-    /// In the command line's own sentence, where it does not take one of them, or not together.
+    /// In the command line's own words, if an option is not accepted, alone or together with the others.
     pub fn of_options<'a>(options: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
         let command = Self::augment_args(Command::new("slump").no_binary_name(true));
         let given = options.into_iter().map(|(name, value)| format!("--{name}={value}"));
@@ -66,7 +66,7 @@ impl Args for Config {
     }
 }
 
-/// The option of a setting.
+/// The command-line option for a setting.
 fn option(about: &About) -> Arg {
     let parser: ValueParser = match about.kind {
         Kind::Number => clap::value_parser!(f64).into(),
@@ -91,11 +91,11 @@ fn option(about: &About) -> Arg {
     }
 }
 
-/// What people call settings that have a short name.
+/// Long names of settings that have a short name.
 const ALIASES: [(&str, &str); 4] =
     [("dt", "time-step"), ("rho", "restitution"), ("mu", "friction"), ("solver", "method")];
 
-/// What is given of a setting.
+/// The value given for a setting, if any.
 fn given(about: &About, matches: &ArgMatches) -> Option<Value> {
     let name = about.name;
     match about.kind {
@@ -202,10 +202,10 @@ impl<'de> Visitor<'de> for ConfigVisitor {
     }
 }
 
-/// What is wrong with a command line, in one sentence that says what is allowed: the parser of `command` itself says
-/// what it could not read, adds usage and hints, and leaves out what it would take.
+/// The error in a command line, in one sentence that says what is allowed. The message of `command`'s own parser is not
+/// enough: it adds usage and hints, and leaves out the allowed values.
 pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
-    // Before that no argument knows how it is shown.
+    // Arguments have no displayed form before this call.
     command.build();
     let said = |kind: ContextKind| match error.get(kind) {
         Some(ContextValue::String(text)) => text.clone(),
@@ -232,7 +232,7 @@ pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
                 none if none.is_empty() => String::new(),
                 near => format!(", such as {near}"),
             };
-            // Those of links and studies are not the whole command line.
+            // Links and studies accept only a part of the command line.
             let allowed = match command.is_no_binary_name_set() {
                 true => "a setting, or say where a scene comes from",
                 false => "an option or a command that --help lists",
@@ -269,13 +269,13 @@ pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
     legible(&sentence)
 }
 
-/// `--bond <BOND>` as a user writes it.
+/// Reduces `--bond <BOND>` to `--bond`, as a user writes it.
 fn without_value_name(argument: &str) -> &str {
     argument.split_once(" <").map_or(argument, |(name, _)| name)
 }
 
-/// What a value must be that is no word of a list: what the parser says, and the option's help,
-/// which has the range.
+/// Requirement on a value that is not a word of a list: from the parser's error, and from the option's help, which has
+/// the range.
 fn kind_of_value(error: &clap::Error, command: &Command, argument: &str) -> String {
     let source = error.source();
     let kind = if source.is_some_and(|source| source.is::<ParseFloatError>()) {
@@ -287,7 +287,7 @@ fn kind_of_value(error: &clap::Error, command: &Command, argument: &str) -> Stri
     {
         format!("a whole number in {range}")
     } else {
-        // What a parser of ours says is allowed.
+        // One of Slump's own parsers: its message says what is allowed.
         source.map_or_else(|| "given".to_owned(), ToString::to_string)
     };
     match find(command, argument).and_then(Arg::get_help) {
@@ -301,7 +301,7 @@ fn find<'a>(command: &'a Command, argument: &str) -> Option<&'a Arg> {
     own.or_else(|| command.get_subcommands().find_map(|below| find(below, argument)))
 }
 
-/// The names of all commands, and of those within each.
+/// The names of all commands, including subcommands.
 fn commands(command: &Command) -> String {
     let name = |command: &Command| match commands(command) {
         none if none.is_empty() => command.get_name().to_owned(),
@@ -311,7 +311,7 @@ fn commands(command: &Command) -> String {
     own.map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// The first sentence of what the argument parser says: it also gives usage and hints.
+/// The first sentence of a parser's message, without usage and hints.
 fn first_sentence(message: &str) -> String {
     let message = message.trim_start_matches("error: ");
     let lines = message.lines().take_while(|line| !line.is_empty() && !line.starts_with("Usage"));

@@ -1,4 +1,4 @@
-//! The description of a run as words of a command line, and as texts that a file carries.
+//! The description of a run as words of a command line and as texts to be stored in files.
 
 use serde_json::Value as Json;
 
@@ -8,11 +8,11 @@ use crate::output::Texts;
 use crate::sim::Settings;
 
 impl Config {
-    /// The options that ask for this scene with these settings: where it comes from, and each setting that
-    /// differs from what the scene says.
+    /// The options that ask for this scene with these settings: the source of the scene, and each setting that differs
+    /// from the scene's own.
     ///
     /// # Errors
-    /// Where the scene is no longer there.
+    /// If the scene no longer exists.
     pub fn words(&self, settings: &Settings) -> Result<Vec<String>> {
         let unchanged = Self { source: self.source.clone(), ..Self::default() };
         let before = unchanged.without_settling()?.settings();
@@ -21,9 +21,9 @@ impl Config {
         Ok(words)
     }
 
-    /// What says where the scene comes from.
+    /// The options for the source of the scene.
     fn source_words(&self) -> Vec<String> {
-        // A name that is no text is refused where it is read.
+        // A path that is not Unicode is refused when it is read.
         let Ok(Json::Object(fields)) = serde_json::to_value(&self.source) else {
             return Vec::new();
         };
@@ -35,7 +35,7 @@ impl Config {
     }
 }
 
-/// Settings as options: all of them, or those that differ from others.
+/// Settings as options: all settings, or those that differ from `others`.
 pub fn words_of(settings: &Settings, others: Option<&Settings>) -> Vec<String> {
     let differs = |name| others.is_none_or(|others| settings.get(name) != others.get(name));
     let names = Settings::about().map(|about| about.name).filter(|&name| differs(name));
@@ -44,26 +44,26 @@ pub fn words_of(settings: &Settings, others: Option<&Settings>) -> Vec<String> {
     words.flatten().collect()
 }
 
-/// Words as a shell takes them.
+/// Joins words into a line for a shell.
 pub fn joined(words: &[String]) -> String {
-    // Refused is what no argument can hold.
+    // An error means a character that no argument can contain.
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
-/// What a run is made of.
+/// Scene, settings and options of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// Name of its scene.
     pub scene: String,
     /// Its settings.
     pub settings: Settings,
-    /// The options that make it.
+    /// The options that reproduce the run.
     pub words: Vec<String>,
 }
 
 impl Provenance {
-    /// What a file says of itself that shows this run, at a simulated time (s) if it is of one moment. The command
-    /// has these options besides.
+    /// Texts for a file that shows this run, with a simulated time (s) if the file shows one moment. `besides` are
+    /// further options of the command.
     pub fn texts(&self, time_secs: Option<f64>, besides: &[String]) -> Texts {
         let Self { scene, settings, words } = self;
         let mut texts = Texts::default();
@@ -80,8 +80,8 @@ impl Provenance {
     }
 }
 
-/// The options that ask for a run up to a simulated time (s), with a picture there. One may be later than the
-/// scene's own end.
+/// The options for a run up to a simulated time (s), with a picture at that time. The time may exceed the scene's
+/// duration.
 pub fn words_up_to(time_secs: f64) -> Vec<String> {
     let secs = time_secs.to_string();
     let mut words = vec!["--times".to_owned(), secs.clone()];
@@ -91,7 +91,7 @@ pub fn words_up_to(time_secs: f64) -> Vec<String> {
     words
 }
 
-/// A simulated time as one asks for it: without the rounding of a sum of many steps.
+/// A simulated time as a user would write it, without the rounding error of a sum over many steps.
 pub fn asked_time_secs(time_secs: f64) -> f64 {
     format!("{time_secs:.12}").parse().unwrap_or(time_secs)
 }

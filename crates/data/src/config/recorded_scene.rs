@@ -1,4 +1,5 @@
-//! Recordings whose grains start a pile: a pile has walls, gravity and sizes of its own, whatever their scene had.
+//! Checks of recordings whose grains become the initial state of a pile. A pile has its own walls, gravity and sizes,
+//! which may differ from those of the recorded scene.
 
 use std::path::Path;
 
@@ -7,8 +8,8 @@ use crate::data::facts_of_recording;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-/// Beginnings of the names of facts that a pile does not take from a recording. Settings are no part of them: those are
-/// asked for with every run.
+/// Prefixes of the names of facts that a pile does not take from a recording. Settings are not in the list, because
+/// every run asks for its own.
 const OF_THE_PILE: [&str; 8] = [
     "areal_density",
     "boundaries",
@@ -20,8 +21,9 @@ const OF_THE_PILE: [&str; 8] = [
     "physics.",
 ];
 
-/// Fails where grains are those of a recording, or of a table of it, whose scene has borders that wrap, or, unless a pile
-/// `is_asked_for` by its name, anything else that the `pile` lacks.
+/// Checks that a pile can start from the grains at `path`. Fails if they are from a recording, or a table of a
+/// recording, whose scene has periodic borders. Unless a pile `is_asked_for` by name, also fails if that scene has
+/// anything else that the `pile` lacks.
 pub(super) fn check_starts_pile(path: &Path, pile: &Scene, is_asked_for: bool) -> Result<()> {
     let Some(recorded) = facts_of_recording(path) else { return Ok(()) };
     if recorded.keys().any(|name| name.starts_with("periodic.")) {

@@ -1,5 +1,5 @@
-//! What a user asks of a run: where the scene comes from, and changes to it. The same structure is the
-//! command line's options, a run of a study, and what is written beside results.
+//! The request for a run: the source of the scene, and changes to it. The same structure describes the options of the
+//! command line, a run of a study, and the record that is written with results.
 
 use std::path::{Path, PathBuf};
 
@@ -21,22 +21,22 @@ use crate::sim::{RemedyChanges, Settings, Stepper};
 use crate::solver::SolverChanges;
 use crate::world::{Grain, ParameterChanges};
 
-/// A scene and changes to it. What is left out stays as the scene says. Plain data, checked where the
-/// scene is made ([`Config::scene`]).
+/// A scene and changes to it. Values that are not given are those of the scene. Plain data, checked when the scene is
+/// made ([`Config::scene`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Config {
-    /// Where the scene comes from.
+    /// The source of the scene.
     pub source: SceneSource,
-    /// The way to step.
+    /// The stepper.
     pub stepper: Option<Stepper>,
-    /// Numbers of the contact laws, and Δt.
+    /// Parameters of the contact laws, and Δt.
     pub parameters: ParameterChanges,
-    /// How well each step is solved.
+    /// Settings of the solver.
     pub solver: SolverChanges,
     /// Remedies for known failures.
     pub remedies: RemedyChanges,
-    /// The folder that relative paths of files are in; the working directory where it is empty. It is not a part of the
-    /// request: a study asks for the same runs in any folder.
+    /// The folder for relative paths; empty for the working directory. It is not a part of the request: a study asks
+    /// for the same runs in any folder.
     pub folder: PathBuf,
 }
 
@@ -91,7 +91,7 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// Reads the value of the field of that name from a file. Whether there is one.
+    /// Reads the value of the field `name` from a file. Returns false if there is no such field.
     pub(super) fn read<'de, A: MapAccess<'de>>(
         &mut self,
         name: &str,
@@ -125,14 +125,14 @@ impl SceneSource {
         }
     }
 
-    /// Asks for this pile.
+    /// Sets the options to those of this pile.
     pub fn set_new_pile(&mut self, pile: &NewPile) {
         let NewPile { grains, box_width_in_diameters, seed, deposition } = *pile;
         (self.grains, self.box_width) = (Some(grains), Some(box_width_in_diameters));
         (self.seed, self.deposition) = (Some(seed), Some(deposition));
     }
 
-    /// True if grains have to be put in place and settled.
+    /// True if a new pile is to be made, whose grains must settle.
     pub fn makes_new_pile(&self) -> bool {
         self.grains.is_some()
             || self.box_width.is_some()
@@ -141,16 +141,16 @@ impl SceneSource {
     }
 }
 
-/// A scene before anything of it is changed.
+/// A scene before any changes.
 #[derive(Clone, Debug)]
 pub struct BaseScene {
     scene: Scene,
-    /// What its grains are the start of, where they have to settle.
+    /// The new pile, if the scene's grains are its unsettled grains.
     new_pile: Option<NewPile>,
 }
 
 impl BaseScene {
-    /// A scene that is at hand, but for a file of discs that it names: that lies in `folder`.
+    /// Uses an existing scene. If the scene names a file of discs, the file is looked up in `folder`.
     ///
     /// # Errors
     /// Names the first field outside its range, or the file that cannot be read.
@@ -161,33 +161,34 @@ impl BaseScene {
 }
 
 impl Config {
-    /// The name of the scene that is used where none is given.
+    /// The name of the scene that is used if none is given.
     pub const DEFAULT_SCENE: &str = "pile";
-    /// The scene whose start can be chosen.
+    /// The only scene with a `start` option.
     const CRADLE: &str = "cradle";
 
-    /// A scene by name or file, as it says itself.
+    /// A scene by name or file, without changes.
     pub fn of_scene(name: impl Into<String>) -> Self {
         let source = SceneSource { scene: Some(name.into()), ..SceneSource::default() };
         Self { source, ..Self::default() }
     }
 
-    /// True if nothing is asked for.
+    /// True if nothing is requested.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The names of settings that are given and that a stepper does not read. A remedy that it does not take is refused.
+    /// The names of given settings that a stepper does not read. A remedy that the stepper lacks is not listed: it is
+    /// refused.
     pub fn unread_by(&self, stepper: Stepper) -> Vec<String> {
         let (source, remedies) = (SceneSource::default(), RemedyChanges::default());
         let given = Self { source, stepper: None, remedies, ..self.clone() };
-        // Plain data by names: there is nothing that JSON cannot say.
+        // Plain data with names can always be written as JSON.
         let given = serde_json::to_value(&given).unwrap_or_default();
         let names = given.as_object().into_iter().flat_map(|given| given.keys());
         names.filter(|name| !stepper.reads(name)).cloned().collect()
     }
 
-    /// The same with all settings given.
+    /// This request with all settings given.
     pub fn with_settings(self, settings: &Settings) -> Self {
         Self {
             stepper: Some(settings.stepper),
@@ -198,7 +199,7 @@ impl Config {
         }
     }
 
-    /// Gives the setting of that name a value of its kind. Whether there is one of that name and kind.
+    /// Sets the setting `name`. Returns false if there is no such setting or the value is of another kind.
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies, .. } = self;
         if name == Settings::STEPPER.name {
@@ -208,9 +209,9 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// The scene with the changes made, checked, but for a new pile: the grains of the built-in
-    /// one, or where they start from, stand in for it. Quick, so that a wrong value is told of
-    /// before long work.
+    /// The checked scene with the changes, except that a new pile is not settled: the scene has the built-in grains, or
+    /// the grains in their initial positions, instead. It is quick, so that a wrong value is reported before long work
+    /// begins.
     ///
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read.
@@ -218,17 +219,17 @@ impl Config {
         self.change(&self.base_scene()?)
     }
 
-    /// The scene with the changes made, checked. A new pile is made here, which takes a while:
-    /// `progress` is told, and can end it by returning false.
+    /// The checked scene with the changes. A new pile is made here, which takes a while: `progress` is called
+    /// repeatedly and stops the work by returning false.
     ///
     /// # Errors
-    /// Names the first field that is unknown or outside its range, or the file that cannot be read; and
-    /// where the grains do not come to rest.
+    /// Names the first field that is unknown or outside its range, or the file that cannot be read. Also fails if the
+    /// grains do not come to rest.
     pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
         self.scene_on(self.base_scene()?, progress)
     }
 
-    /// The same of a scene that is at hand, whatever scene is named.
+    /// Like [`Config::scene`], but for the scene `base`, whatever scene the request names.
     ///
     /// # Errors
     /// As [`Config::scene`].
@@ -244,7 +245,7 @@ impl Config {
         }
     }
 
-    /// The scene whose settled grains are at hand.
+    /// The scene with a new pile whose settled grains are given.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -252,7 +253,7 @@ impl Config {
         self.settled_on(self.base_scene()?, settled)
     }
 
-    /// The scene that starts from these discs, as if `initial` were a file of them.
+    /// The scene with these discs as its initial state, as if `initial` were a file of them.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -262,7 +263,7 @@ impl Config {
         self.change(&BaseScene { scene, new_pile: None })
     }
 
-    /// The pile that has to be made for this scene, if any.
+    /// The new pile that must be made for this scene, if any.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -273,7 +274,7 @@ impl Config {
         Ok(self.base_scene()?.new_pile)
     }
 
-    /// The scene as its file or its name says it.
+    /// The scene in its file or by its name, without changes.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -300,7 +301,7 @@ impl Config {
         Ok(BaseScene { scene, new_pile })
     }
 
-    /// What of a config its [`Config::base_scene`] hangs on: equal for all that share one.
+    /// A key that is equal for all requests with the same [`Config::base_scene`].
     pub fn base_scene_key(&self) -> String {
         let SceneSource { scene, initial, initial_step, box_width, start, .. } = &self.source;
         let box_width = box_width.filter(|_| initial.is_some());
@@ -308,10 +309,10 @@ impl Config {
         format!("{:?}", (self.named(), is_named, initial, initial_step, box_width, start))
     }
 
-    /// The scene of [`Config::without_settling`] where its base scene is at hand.
+    /// Like [`Config::without_settling`], for a base scene that was already made.
     ///
     /// # Errors
-    /// As there.
+    /// As [`Config::without_settling`].
     pub fn change(&self, base: &BaseScene) -> Result<Scene> {
         self.check_source()?;
         let mut scene = base.scene.clone();
@@ -319,13 +320,13 @@ impl Config {
         Ok(scene)
     }
 
-    /// The scene's own name, however it was asked for; a file's name as it is.
+    /// The canonical name of a built-in scene; for a file, its name as given.
     pub fn named(&self) -> &str {
         let asked = self.source.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
         SceneInfo::named(asked).map_or(asked, |info| info.name)
     }
 
-    /// Fails where what is said of the scene's source does not go together.
+    /// Fails if the options for the scene's source contradict each other.
     fn check_source(&self) -> Result<()> {
         let name = self.named();
         if let (None, Some(step)) = (&self.source.initial, self.source.initial_step) {
@@ -366,7 +367,7 @@ impl Config {
         discs.check_masses(path, pile.areal_density)?;
         let RecordedGrains { fixed_discs, .. } = discs;
         if !fixed_discs.is_empty() {
-            // The base that the grains lie on, as wide as it was.
+            // The rough base of the recording, with its width.
             pile.fixed_discs = fixed_discs;
         }
         Ok(pile)
@@ -387,9 +388,9 @@ impl Config {
         Ok(scene)
     }
 
-    /// The same asked for, with every number that `scene` fills in.
+    /// This request with every default filled in from `scene`.
     pub fn resolved(&self, scene: &Scene) -> Self {
-        // An initial state may have a scene of its own.
+        // An initial state may include its own scene.
         let name = if self.source.initial.is_some() { &scene.name } else { self.named() };
         let source = SceneSource {
             scene: Some(name.into()),
@@ -399,7 +400,7 @@ impl Config {
         Self { source, ..self.clone() }.with_settings(&scene.settings())
     }
 
-    /// Changes what is given of settings. A preset, which is no setting, is left out.
+    /// Applies the given settings. A preset is not a setting and is not applied.
     pub fn change_settings(&self, settings: &mut Settings) {
         settings.stepper = self.stepper.unwrap_or(settings.stepper);
         self.parameters.apply(&mut settings.parameters);
@@ -412,7 +413,7 @@ impl Config {
             put_on_base(scene, width)?;
         }
         scene.stepper = self.stepper.unwrap_or(scene.stepper);
-        // A preset leaves out what the stepper does not take.
+        // A preset skips the settings that the stepper does not have.
         if let Some(preset) = self.source.preset {
             preset.apply(scene);
         }
@@ -423,7 +424,7 @@ impl Config {
         scene.validate()
     }
 
-    /// The scene of a saved state, which begins with the state's grains.
+    /// The scene of a saved state, with the state's grains as initial state.
     fn scene_of_state(&self, path: &Path) -> Result<Scene> {
         if let Some(step) = self.source.initial_step {
             let allowed =
@@ -432,7 +433,7 @@ impl Config {
         }
         let scene = SavedState::open(path)?.as_start();
         match &self.source.scene {
-            // A file's scene may be called as a challenge is.
+            // The scene of a file may have the same name as a challenge.
             Some(name) if *name != scene.name && self.named() != scene.name => {
                 let allowed =
                     format!("left out, or {}, the scene of the initial state", scene.name);
@@ -442,11 +443,11 @@ impl Config {
         }
     }
 
-    /// Makes the changes asked for to a run that goes on: from here on, while all that has been stays.
+    /// Applies the requested changes to a resumed run, from now on.
     ///
     /// # Errors
-    /// Names the first setting that is outside its range or does not go with the others, or says that
-    /// another start is asked for.
+    /// Names the first setting that is outside its range or contradicts the others, or says that the request asks for
+    /// another initial state.
     pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
         let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
         if self.source != kept {

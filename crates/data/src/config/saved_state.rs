@@ -1,4 +1,4 @@
-//! A run as a file: the whole of it, so that it goes on bit for bit.
+//! A complete run as a file, from which it resumes bit for bit.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 use crate::world::Gravity;
 
-/// What files begin with.
+/// The header of the files.
 const SEAL: Seal = Seal {
     magic: "slump-state ",
     format: 6,
@@ -19,7 +19,7 @@ const SEAL: Seal = Seal {
     form: "a state that --save or --checkpoint-every wrote",
 };
 
-/// A run at one moment, to go on from.
+/// A run at one moment, from which it can resume.
 ///
 /// ```
 /// use slump_core::scene::built_in;
@@ -38,26 +38,26 @@ const SEAL: Seal = Seal {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedState {
-    /// The scene that the run began with, with the settings that are in force now.
+    /// The scene with which the run began, with the settings now in force.
     pub scene: Scene,
-    /// The run itself, with all that it remembers.
+    /// The simulation, including everything that affects later steps.
     pub simulation: Simulation,
-    /// Sums over its steps so far.
+    /// Sums over the steps so far.
     pub tally: Tally,
-    /// What a run that goes on in the folder of its own keeps besides; it means something to that alone.
+    /// Additional data of a run that resumes in its own folder. Only that run reads it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of_run: Vec<u8>,
 }
 
 impl SavedState {
-    /// The state of a run of `scene` at this moment; `tally` has the sums over its steps, or nothing
-    /// where nobody wants them.
+    /// The state of a run of `scene` at this moment. `tally` has the sums over its steps; it may be empty if the sums
+    /// are not needed.
     pub fn new(mut scene: Scene, simulation: Simulation, tally: Tally) -> Self {
         scene.set_settings(*simulation.settings());
         Self { scene, simulation, tally, of_run: Vec::new() }
     }
 
-    /// Writes it to a file, which is there as a whole or not at all.
+    /// Writes a file. The file is written completely or not at all.
     ///
     /// # Errors
     /// Names the file and what the system says.
@@ -68,34 +68,34 @@ impl SavedState {
     /// Reads a file.
     ///
     /// # Errors
-    /// Where it cannot be read, is damaged or of another version, or is no such file.
+    /// If it cannot be read, is damaged, was written by another version, or is not a saved run.
     pub fn open(path: &Path) -> Result<Self> {
         SEAL.open(path)
     }
 
-    /// What [`SavedState::save`] writes. The same state is the same bytes.
+    /// The bytes that [`SavedState::save`] writes. Equal states give equal bytes.
     ///
     /// # Errors
-    /// Where it cannot be put into bytes.
+    /// If the state cannot be serialised.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         SEAL.written(self)
     }
 
-    /// What [`SavedState::open`] reads; `path` is for messages.
+    /// Reads the bytes of a file; `path` is for messages.
     ///
     /// # Errors
-    /// As there.
+    /// As [`SavedState::open`].
     pub fn from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self> {
         SEAL.read(bytes, path.as_ref())
     }
 
-    /// True if a file is one of these, of whatever version.
+    /// True if a file is a saved run, of any version.
     pub fn is_in(path: &Path) -> bool {
         SEAL.is_on(path)
     }
 
-    /// A new start, at t = 0, with the grains as they lie and move now and everything else that the
-    /// scene has where it is now.
+    /// A scene that starts at t = 0 with the present grains and their velocities, and everything else in the scene at
+    /// its present position.
     pub fn as_start(&self) -> Scene {
         let world = self.simulation.world();
         let grains = &world.grains;

@@ -1,4 +1,4 @@
-//! Scene files in TOML, and discs as CSV.
+//! Scene files in TOML, and files of discs in CSV.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,14 +11,15 @@ use crate::input::{MOST_OF_TOML, read_text};
 use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
 use crate::world::Grain;
 
-/// What a scene file must be, for messages.
+/// The expected form of a scene file, for messages.
 const FORM: &str = "a scene file in TOML, such as `slump scene` prints";
 
-/// Reads a scene from a TOML file. Grains that come from a CSV or are a new pile are read or made.
+/// Reads a scene from a TOML file, reads its grains from a CSV file if it names one, and makes a new pile if it asks
+/// for one.
 ///
 /// # Errors
-/// Where the file cannot be read, is no TOML, or says something that no scene says (the message
-/// names line and column), or where a value is outside its range.
+/// If the file cannot be read, is not TOML, contains something unknown (the message names line and column), or contains
+/// a value outside its range.
 pub fn read_scene(path: &Path) -> Result<Scene> {
     match read_unsettled(path)? {
         (scene, Some(pile)) => Ok(scene.with_settled(settle(&pile, |_| true)?)),
@@ -26,8 +27,8 @@ pub fn read_scene(path: &Path) -> Result<Scene> {
     }
 }
 
-/// The same but for the settling: a new pile is given as well, and the scene has its grains
-/// where they start from. Quick.
+/// Like [`read_scene`] without settling: also returns the new pile, if any, and the scene then has its unsettled
+/// grains. Quick.
 pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     let text = read_text(path, FORM, MOST_OF_TOML)?;
     let scene = toml::from_str(&text).map_err(|error| {
@@ -38,7 +39,8 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     unsettled(scene, path.parent().unwrap_or(Path::new("")))
 }
 
-/// A scene with its grains, or with those that a new pile starts from; files that it names lie in `folder`.
+/// A scene with its grains, or with the unsettled grains of a new pile. Files that the scene names are looked up in
+/// `folder`.
 pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
     let mut new_pile = None;
     if let Some(source) = scene.source.take() {
@@ -65,7 +67,7 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
     Ok((scene, new_pile))
 }
 
-/// The grains of a file for a scene, which takes the fixed discs of the file too if it lists none.
+/// The grains of a file for a scene. If the scene lists no fixed discs, it also takes those of the file.
 fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Grain>> {
     let discs = read_grains(path, step)?;
     discs.check_masses(path, scene.areal_density)?;
@@ -83,24 +85,24 @@ fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Gra
     Ok(grains)
 }
 
-/// The TOML file that says what a scene says.
+/// A scene as a TOML file.
 ///
 /// # Errors
-/// Where the scene holds what TOML cannot say.
+/// If the scene contains a value that TOML cannot express.
 pub fn scene_to_toml(scene: &Scene) -> Result<String> {
     toml::to_string(scene).map_err(|error| Error::value("scene", &scene.name, error.to_string()))
 }
 
-/// Reads discs from the text of a CSV file: header `x,y,radius` and, where there are any, `vx,vy,omega`; SI units;
-/// lines that start with `#` are comments. `path` is for messages.
+/// Reads discs from the text of a CSV file in SI units, with the header `x,y,radius` and optionally `vx,vy,omega`.
+/// Lines that start with `#` are comments. `path` is for messages.
 ///
 /// # Errors
-/// Where a line is none; the message names it.
+/// If a line is not a disc; the message names the line.
 pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
     Ok(parse_grains(text, path)?.grains)
 }
 
-/// The text of a CSV file of discs, of numbers that read back bit for bit; `comment` goes in front, each line of it behind `# `.
+/// Text of a CSV file of discs. The numbers read back bit for bit. `comment` comes first, each of its lines after `# `.
 pub fn write_discs(grains: &[Grain], comment: &str) -> String {
     let mut text = String::new();
     for line in comment.lines() {

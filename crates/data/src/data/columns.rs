@@ -1,4 +1,4 @@
-//! The tables of a recording: which columns they have, and what these hold.
+//! The tables of a recording: their columns, and the values in them.
 
 use super::means;
 use super::other_bodies::{OTHER_KINDS, OtherBodies};
@@ -10,7 +10,7 @@ use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, Observables, Stepper};
 
-/// The tables that formats write for each frame, without a row.
+/// The tables that formats write for each frame, without rows.
 pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     let histograms = histogram_table(&Observables::default(), &[]);
     let contacts = Table::new(CONTACTS, CONTACT_COLUMNS, &[], &[]);
@@ -19,34 +19,34 @@ pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     [empty_grains(), contacts, means::no_pairs(), walls, measures, histograms]
 }
 
-/// All tables that formats write, without a row.
+/// All tables that formats write, without rows.
 pub(super) fn empty_tables() -> impl Iterator<Item = Table> {
     empty_tables_of_frames().into_iter().chain([Table::of_steps(&[])])
 }
 
-/// The tables of a recording one by one, for those who want no whole frame.
+/// The tables of a recording one by one, for callers that do not need a whole frame.
 impl Table {
-    /// A row a grain, then a row a fixed disc.
+    /// One row per grain, then one row per fixed disc.
     pub fn of_grains(moment: &Moment) -> Self {
         grains(moment, &GrainMeasures::of_each(moment))
     }
 
-    /// A row a contact.
+    /// One row per contact.
     pub fn of_contacts(moment: &Moment) -> Self {
         contacts(moment)
     }
 
-    /// One row, of the whole pile.
+    /// One row for the whole pile.
     pub fn of_measures(moment: &Moment) -> Self {
         measures(Some((&moment.observables, &PileMeasures::of(moment))))
     }
 
-    /// A row a bin of each histogram.
+    /// One row per bin of each histogram.
     pub fn of_histograms(moment: &Moment) -> Self {
         histogram_table(&moment.observables, &histograms(moment))
     }
 
-    /// A row a step.
+    /// One row per step.
     pub fn of_steps(rows: &[Observables]) -> Self {
         Self::new("steps", STEP_COLUMNS, rows, &[])
     }
@@ -54,11 +54,11 @@ impl Table {
 
 /// Words of the column `kind`.
 pub(super) const KINDS: &[&str] = &["grain", "fixed", "lost"];
-/// Place of the word for a disc that moves.
+/// Index of the word for a moving disc.
 pub(super) const GRAIN: usize = 0;
-/// Of one that does not.
+/// Index of the word for a fixed disc.
 pub(super) const FIXED: usize = 1;
-/// Of one that went through a wall or left the world.
+/// Index of the word for a disc that went through a wall or left the world.
 pub(super) const LOST: usize = 2;
 
 struct GrainTableRow {
@@ -121,7 +121,7 @@ pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     grains_of(&rows, measures)
 }
 
-/// Rows with what is measured of grains. Of fixed discs, which follow, there is nothing.
+/// Rows with the measures of grains. Fixed discs, which follow, have no measures.
 fn grains_of(rows: &[GrainTableRow], measures: &[GrainMeasures]) -> Table {
     let measures = Table::new("grains", GrainMeasures::COLUMNS, measures, &[]);
     Table::new("grains", GRAIN_COLUMNS, rows, &[]).beside(measures)
@@ -138,7 +138,7 @@ struct ContactTableRow {
     id: u32,
     other_id: u64,
     kind: u32,
-    /// Place in the list of names.
+    /// Index in the list of names.
     name: u32,
     has_bonds: bool,
     state: ContactState,
@@ -228,7 +228,7 @@ pub(super) fn contacts(moment: &Moment) -> Table {
     Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
 }
 
-/// What is measured of a whole pile at a step: a row, or none.
+/// Measures of a whole pile at a step: one row or none.
 pub(super) fn measures(row: Option<(&Observables, &PileMeasures)>) -> Table {
     let (now, pile): (Vec<_>, Vec<_>) = row.into_iter().map(|(now, pile)| (*now, *pile)).unzip();
     let of_step =
@@ -272,7 +272,7 @@ pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Ta
     Table::new("histograms", BIN_COLUMNS, &bins, &words)
 }
 
-/// A frame that is there in every format.
+/// A frame that has been written in every format.
 pub(super) struct FrameRow {
     pub step: u64,
     pub time_secs: f64,
@@ -289,21 +289,21 @@ pub(super) fn frames(rows: &[FrameRow]) -> Table {
     Table::new("frames", FRAME_COLUMNS, rows, &[])
 }
 
-/// Something that each step measures, as tables call it.
+/// A quantity that each step measures, with its name in tables.
 pub struct Observed(&'static ColumnSpec<Observables>);
 
 impl Observed {
-    /// All of them.
+    /// All quantities.
     pub fn all() -> impl Iterator<Item = Self> {
         STEP_COLUMNS.iter().map(Self)
     }
 
-    /// The one of that name.
+    /// The quantity with that name.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|observed| observed.0.name == name)
     }
 
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(&self) -> &'static str {
         self.0.name
     }
@@ -317,12 +317,12 @@ impl Observed {
         }
     }
 
-    /// What it is, in a few words.
+    /// Description, in a few words.
     pub fn about(&self) -> &'static str {
         self.0.about
     }
 
-    /// Its value in a row that has it; 1 and 0 stand for what is so and what is not.
+    /// The value in a row that has one; true is 1 and false is 0.
     pub fn of(&self, row: &Observables) -> Option<f64> {
         self.0.value.number(row)
     }

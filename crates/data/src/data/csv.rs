@@ -1,4 +1,4 @@
-//! Recordings as text: a growing table of each kind of row, `csv/grains.csv` and so on.
+//! Recordings as text: one growing table for each kind of row, `csv/grains.csv` and so on.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
@@ -65,30 +65,30 @@ impl Format for Csv {
     }
 }
 
-/// What begins a line that is a comment.
+/// First character of a comment line.
 pub(super) const COMMENT: u8 = b'#';
 
-/// A table that is written row by row, below comments that say what the columns are.
+/// A table that is written row by row, below comments that describe the columns.
 pub(super) struct TextTable {
     path: PathBuf,
-    /// Comments, and the line of names.
+    /// Comments and the header line.
     head: String,
     names: String,
     file: Option<GrowingFile>,
     rows: Vec<u8>,
 }
 
-/// What of a table stays.
+/// The rows that remain in a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KeptRows {
     pub rows: u64,
-    /// Of the last row.
+    /// Step of the last row.
     pub step: Option<u64>,
 }
 
 impl TextTable {
-    /// A table with the columns of `table`. The file begins with the first rows, even if these are none, or is gone on with
-    /// ([`TextTable::roll_back`]).
+    /// A table with the columns of `table`. The file is created with the first rows, even if there are none of them, or
+    /// continued after [`TextTable::roll_back`].
     pub(super) fn new(path: PathBuf, run: &RunFacts, table: &Table) -> Self {
         let names: Vec<_> = table.columns.iter().map(|column| column.name).collect();
         let names = names.join(",");
@@ -109,7 +109,7 @@ impl TextTable {
         Ok(())
     }
 
-    /// The file, with its head at least.
+    /// The file, which has at least its head.
     fn begun(&mut self) -> Result<&mut GrowingFile> {
         match &mut self.file {
             Some(file) => Ok(file),
@@ -121,12 +121,12 @@ impl TextTable {
         }
     }
 
-    /// Has all rows on the disk, and the head at least.
+    /// Writes the file to the disk, at least with its head.
     pub(super) fn finish(&mut self) -> Result<()> {
         self.begun()?.sync()
     }
 
-    /// Drops the rows after a step, or all, and a half row at the end.
+    /// Drops the rows after a step, or all rows, and an incomplete row at the end.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
         let (kept, whole) = self.rows_there(step, u64::MAX)?;
@@ -138,8 +138,8 @@ impl TextTable {
         Ok(kept)
     }
 
-    /// The rows of the file up to a step, at most so many, and the length of these, bytes; none without a
-    /// file.
+    /// Counts the rows of the file up to a step, at most `most`, and gives their length with the head, bytes. Both are
+    /// 0 without a file.
     pub(super) fn rows_there(&self, step: Option<u64>, most: u64) -> Result<(KeptRows, u64)> {
         let mut file = match File::open(&self.path) {
             Ok(file) => BufReader::new(file),
@@ -202,7 +202,7 @@ fn write_rows(text: &mut Vec<u8>, table: &Table) {
                     text.extend_from_slice(said.as_bytes());
                 }
                 Values::Counts(values) => {
-                    // Memory takes whatever is written to it.
+                    // Writing to memory cannot fail.
                     let _ = write!(text, "{}", values[row]);
                 }
                 Values::Flags(values) => {
@@ -218,7 +218,7 @@ fn write_rows(text: &mut Vec<u8>, table: &Table) {
     }
 }
 
-/// A word as one field: what has commas or quotes of its own is put in quotes (RFC 4180).
+/// A word as one field: quoted if it contains commas or quotes (RFC 4180).
 fn write_word(text: &mut Vec<u8>, word: &str) {
     if word.contains([',', '"']) {
         let _ = write!(text, "\"{}\"", word.replace('"', "\"\""));

@@ -1,4 +1,4 @@
-//! Files below the folder of a recording: how they are named, found and removed.
+//! Files in the folder of a recording: their names, and functions that find and remove them.
 
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 use crate::output::final_name;
 
-/// The list of frames that are there in every format.
+/// The list of frames that have been written in every format.
 pub(super) const FRAMES: &str = "frames.csv";
-/// What the name of a part of a table in Parquet begins with, …
+/// First part of the name of a Parquet file, …
 const BEGINNING_OF_PART: &str = "part-";
-/// … and ends with.
+/// … and last part.
 const ENDING_OF_PART: &str = ".parquet";
 
-/// The plain files of a folder whose names are a recording's, sorted, with the drafts of such files that kills have
-/// left; none if there is no folder. Links and pipes are left out.
+/// The plain files of a folder whose names belong to a recording, sorted, including drafts of such files that a killed
+/// process left. Empty if there is no folder. Links and pipes are left out.
 pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
     let refuse = |error| Error::file(folder, error);
     let entries = match std::fs::read_dir(folder) {
@@ -34,36 +34,35 @@ pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Resu
     Ok(files)
 }
 
-/// Removes a file.
 pub(super) fn remove(path: &Path) -> Result<()> {
     std::fs::remove_file(path).map_err(|error| Error::file(path, error))
 }
 
-/// Makes a folder if it is missing.
+/// Creates a folder if it is missing.
 pub(super) fn make_folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path)
         .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
 }
 
-/// The part of that number in a table's folder.
+/// The path of the part with that number in a table's folder.
 #[cfg(feature = "data")]
 pub(super) fn path_of_part(folder: &Path, number: u64) -> PathBuf {
     folder.join(format!("{BEGINNING_OF_PART}{number:05}{ENDING_OF_PART}"))
 }
 
-/// The number of the part of a table that has this name.
+/// The number of the part with that name.
 pub(super) fn part_number(name: &str) -> Option<u64> {
     let digits = name.strip_prefix(BEGINNING_OF_PART)?.strip_suffix(ENDING_OF_PART)?;
     digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?
 }
 
-/// The parts in a table's folder with their numbers, by which they are sorted.
+/// The parts in a table's folder, sorted by their numbers.
 pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
     let paths = files_named(folder, |name| part_number(name).is_some())?;
     let number = |path: &Path| path.file_name().and_then(|name| part_number(name.to_str()?));
     let numbered = paths.into_iter().filter_map(|path| Some((number(&path)?, path)));
     let mut numbered: Vec<_> = numbered.collect();
-    // Beyond 99999 parts, names have more digits and sort otherwise.
+    // From part 100,000 on, names have more digits and do not sort by number.
     numbered.sort();
     Ok(numbered)
 }

@@ -1,4 +1,4 @@
-//! What all formats have in common.
+//! The interface of all formats, and the data that they write.
 
 use std::path::Path;
 
@@ -11,37 +11,36 @@ use crate::error::{Error, Result};
 use crate::granular::{MomentMeasures, measure};
 use crate::sim::{ForceSums, Moment, Observables};
 
-/// What is to be known of a recording beside its tables: for the metadata of its files.
+/// Facts about a recording in addition to its tables, for the metadata of its files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunFacts {
-    /// Names and what is said of them, none with a line break: program, command, and all that the scene
-    /// says.
+    /// Names and values without line breaks: program, command, and all values of the scene.
     pub facts: Vec<(String, String)>,
 }
 
-/// One moment that is recorded.
+/// One recorded moment.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// How many were recorded before.
+    /// Number of earlier frames.
     pub number: u64,
-    /// Where everything comes from. The tables have all of it that belongs into files.
+    /// The moment that the tables were made from. The tables contain everything that is written to files.
     pub moment: Moment,
-    /// A row a grain, then a row a fixed disc.
+    /// One row per grain, then one row per fixed disc.
     pub grains: Table,
-    /// A row a contact.
+    /// One row per contact.
     pub contacts: Table,
-    /// A row a pair that transmitted anything since the frame before.
+    /// One row per pair that transmitted a force since the frame before.
     pub pairs: Table,
-    /// A row a wall.
+    /// One row per wall.
     pub walls: Table,
-    /// One row, of the whole pile.
+    /// One row for the whole pile.
     pub measures: Table,
-    /// A row a bin of each histogram.
+    /// One row per bin of each histogram.
     pub histograms: Table,
 }
 
 impl Frame {
-    /// Makes the tables of a moment, and of what pairs have transmitted since the frame before.
+    /// Makes the tables of a moment, and of the forces that pairs have transmitted since the frame before.
     pub fn new(number: u64, moment: Moment, sums: &ForceSums) -> Self {
         let MomentMeasures { pile, grains, histograms } = measure(&moment);
         let now = &moment.observables;
@@ -64,15 +63,15 @@ impl Frame {
     }
 }
 
-/// How much a recording has of a run at one moment. All of it must still be there when the run is resumed.
+/// The extent of a recording at one moment of a run. All of it must still exist when the run is resumed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordingMark {
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// Rows of the table of steps.
+    /// Number of rows of the table of steps.
     pub steps: u64,
-    /// Rows of the tables that each frame adds to, in the order in which `data.json` lists them.
+    /// Number of rows of the tables that each frame adds to, in the order in which `data.json` lists them.
     pub rows: [u64; 6],
 }
 
@@ -86,10 +85,10 @@ impl RecordingMark {
     }
 }
 
-/// Refuses a file or a folder of files that has lost rows, frames or the like (`things`) since the run was saved.
+/// Refuses a file or a folder of files that has lost `things` (rows, frames, …) since the run was saved.
 ///
 /// # Errors
-/// Names it, with both counts.
+/// Names the file or folder, with both counts.
 pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) -> Result<()> {
     if found == marked {
         return Ok(());
@@ -100,21 +99,21 @@ pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) ->
     Err(Error::file(path, reason))
 }
 
-/// A way to write frames down. It is used by one thread, which is not the solver's.
+/// A file format for frames. It is used by one thread, which is not the solver's.
 ///
-/// Whatever was written before stays readable whenever the program is killed. A format starts in a
-/// folder that has none of its files, or, with [`Format::roll_back`] as the next call, in one that has.
+/// Whenever the program is killed, everything that was written before stays readable. A format starts in a folder
+/// without its files, or, if the next call is [`Format::roll_back`], in a folder with them.
 pub(super) trait Format: Send {
-    /// Takes the next frame. Its memory must not grow with the number of frames.
+    /// Writes the next frame. Memory must not grow with the number of frames.
     fn add(&mut self, frame: &Frame) -> Result<()>;
 
-    /// Takes what some steps measured, the first after the last of those before.
+    /// Writes the measurements of some steps, which follow the steps before.
     fn add_steps(&mut self, _steps: &[Observables]) -> Result<()> {
         Ok(())
     }
 
-    /// Has everything that was taken where readers find it. Called after a frame, or after several
-    /// where the run is faster than the disk.
+    /// Makes everything that was added visible to readers. Called after a frame, or after several frames if the run is
+    /// faster than the disk.
     fn flush(&mut self) -> Result<()> {
         Ok(())
     }
@@ -123,13 +122,14 @@ pub(super) trait Format: Send {
         self.flush()
     }
 
-    /// Checks that all is there that was written up to `step` and to the frame of the step `last_frame`. Changes nothing.
+    /// Checks that everything written up to `step`, and up to the frame of the step `last_frame`, still exists. Changes
+    /// nothing.
     ///
     /// # Errors
-    /// Names a file that lacks some of it.
+    /// Names a file that has lost a part of it.
     fn check(&self, step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()>;
 
-    /// Drops what steps after `step` measured, and all frames after that of the step `last_frame`, or all that
-    /// there are, so that the run can go on from `step`.
+    /// Drops the measurements of steps after `step`, and all frames after that of the step `last_frame` (all frames if
+    /// it is `None`), so that the run can resume from `step`.
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
 }

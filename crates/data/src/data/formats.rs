@@ -1,4 +1,4 @@
-//! The list of all formats: which of them this build can write, and how each starts.
+//! The list of all formats: the formats that this build can write, and how each starts.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::scene::{DataSettings, FormatName};
 pub const DEFAULT_FORMAT: FormatName =
     if cfg!(feature = "data") { FormatName::Parquet } else { FormatName::Csv };
 
-/// The formats that are asked for, each once.
+/// The requested formats, without repetitions.
 ///
 /// # Errors
 /// If this build cannot write one of them.

@@ -1,12 +1,12 @@
-//! For OVITO and others that read what LAMMPS writes: `ovito/grains.dump`, a text dump with a row a grain,
-//! `ovito/contacts.dump`, a `dump local` with a row a contact between two discs, as bonds, and `ovito/walls.dump`, one
-//! with a row a wall. A contact with a boundary is left out: OVITO draws bonds between particles alone, and refuses the
-//! frame else.
+//! LAMMPS dumps for OVITO and other readers: `ovito/grains.dump`, a text dump with one row per grain;
+//! `ovito/contacts.dump`, a `dump local` with one row per contact between two discs, as bonds; and `ovito/walls.dump`,
+//! with one row per wall. Contacts with boundaries are left out, because OVITO only draws bonds between particles and
+//! otherwise refuses the frame.
 //!
-//! Dumps have the columns that readers know under the names that they know them by. MDAnalysis takes the lines of a frame
-//! of grains by their number, and neither it nor ASE takes grains without z or with elements that there are not. So
-//! grains have nothing but what every dump has, and what else is to be known stands ahead of the contacts, with the
-//! time of each frame. Numbers are written in the shortest form that reads back as the same number.
+//! Columns have the names that readers know. MDAnalysis finds the lines of a frame of grains by their number, and
+//! neither MDAnalysis nor ASE accepts grains without z or with unknown elements. The frames of grains therefore contain
+//! only the items that every dump has. The description of the run and the time of each frame are written ahead of the
+//! contacts. Numbers are written in the shortest form that reads back as the same number.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -24,18 +24,18 @@ use crate::sim::{GrainState, Moment, OtherBody};
 use slump_core::number::Parts;
 
 pub(super) const FOLDER: &str = "ovito";
-/// Those of grains, contacts and walls.
+/// File names of grains, contacts and walls.
 pub(super) const FILES: [&str; 3] = ["grains.dump", "contacts.dump", "walls.dump"];
 
-/// Begins what is no frame yet. No reader knows such an item, and each skips it at the end of a file.
+/// First line of an incomplete frame. No reader knows this item, and every reader skips it at the end of a file.
 const DRAFT: &str = "ITEM: DRAFT";
-/// What a line begins with that belongs to a draft, also to one of whose word a kill has left a part.
+/// Prefix that identifies the first line of a draft, even if a kill has cut its word short.
 const OF_A_DRAFT: &str = "ITEM: D";
-/// What says the time of a frame, ahead of its step, but of grains …
+/// Item with the time of a frame, ahead of its step. Frames of grains lack it.
 const TIME: &str = "ITEM: TIME";
-/// … and what says its step.
+/// Item with the step of a frame.
 const STEP: &str = "ITEM: TIMESTEP";
-/// Columns of grains as dumps call them, in this order, and ours; all others follow as they are.
+/// First columns of grains, as (name in dumps, name in Slump). All other columns follow with their own names.
 const GRAIN_COLUMNS: [(&str, &str); 10] = [
     ("id", "id"),
     ("type", "kind"),
@@ -46,24 +46,24 @@ const GRAIN_COLUMNS: [(&str, &str); 10] = [
     ("vx", "vx"),
     ("vy", "vy"),
     ("omegaz", "omega"),
-    // What OVITO knows as `coordination` are whole numbers, and fixed discs have none.
+    // OVITO expects whole numbers in `coordination`, but fixed discs have no value.
     ("coordination_number", "coordination"),
 ];
-/// The same of contacts.
+/// Like `GRAIN_COLUMNS`, for contacts.
 const CONTACT_COLUMNS: [(&str, &str); 2] = [("batom1", "id_i"), ("batom2", "id_j")];
-/// What stands at the head of a frame, or says nothing of contacts between discs.
+/// Columns that are left out: they are in the head of a frame, or do not concern contacts between discs.
 const LEFT_OUT: [&str; 3] = ["step", "time", "name_j"];
-/// The column of grains that has words, and those words, of grains, fixed discs and lost grains: readers know the
-/// elements of chemistry alone. All others have numbers for words.
+/// The only column of grains that contains words, and its words for grains, fixed discs and lost grains. Readers only
+/// know chemical elements. All other columns have numbers instead of words.
 const IN_WORDS: &str = "element";
 const ELEMENTS: [&str; 3] = ["H", "He", "Li"];
-/// What says the number of rows of a frame.
+/// Item with the number of rows of a frame.
 const COUNT: &str = "ITEM: NUMBER OF ";
-/// What dumps call grains.
+/// The word for grains in dumps.
 const ATOMS: &str = LABELS[0];
-/// What dumps call the rows of grains, contacts and walls.
+/// The words for rows of grains, contacts and walls in dumps.
 const LABELS: [&str; 3] = ["ATOMS", "BONDS", "ENTRIES"];
-/// LAMMPS counts types from here.
+/// The lowest type number in LAMMPS.
 const FIRST_TYPE: u32 = 1;
 
 pub(super) struct Lammps {
@@ -76,7 +76,7 @@ pub(super) struct Lammps {
 /// A dump that grows.
 struct GrowingDump {
     path: PathBuf,
-    /// From the first frame on.
+    /// `None` before the first frame.
     file: Option<GrowingFile>,
 }
 
@@ -140,7 +140,8 @@ impl GrowingDump {
     }
 }
 
-/// Length of the frames of a dump of ours up to a step, bytes, or of none; none where there is no file.
+/// Length of the frames up to a step in a dump that Slump wrote, bytes; 0 if `step` is `None`. `None` if there is no
+/// file.
 fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     let file = match File::open(path) {
         Ok(file) => file,
@@ -170,14 +171,14 @@ fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
         says_step = text == STEP;
         has_time |= text == TIME;
         if text == TIME || (says_step && !has_time) {
-            // What stands ahead of the first frame goes with it.
+            // Text ahead of the first frame belongs to that frame.
             frame_start = Some(frame_start.map_or(0, |_| line_start));
         }
         line_start += length as u64;
     }
 }
 
-/// The number of frames of a dump of ours up to a step that have all their rows; 0 without a file.
+/// Number of complete frames up to a step in a dump that Slump wrote; 0 without a file.
 fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
     let mut lines = match File::open(path) {
         Ok(file) => BufReader::new(file),
@@ -213,27 +214,27 @@ fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
 
 /// The text of a frame.
 struct FrameText {
-    /// Ahead of the first frame: units, and what is to be known of the run. Readers skip items that
-    /// they do not know there, and nowhere else.
+    /// Text ahead of the first frame: units, and facts about the run. Readers skip unknown items there, and nowhere
+    /// else.
     pub front: String,
-    /// All up to the names of the columns.
+    /// Text up to the names of the columns.
     pub head: String,
     pub rows: String,
 }
 
-/// A row a grain, then a row a fixed disc.
+/// One row per grain, then one row per fixed disc.
 fn grains(frame: &Frame) -> FrameText {
     let rows = 0..frame.grains.len();
     dump(ATOMS, frame, (&frame.grains, &GRAIN_COLUMNS), rows)
 }
 
-/// A row a wall.
+/// One row per wall.
 fn walls(frame: &Frame) -> FrameText {
     let rows = 0..frame.walls.len();
     dump(LABELS[2], frame, (&frame.walls, &[]), rows)
 }
 
-/// A row a contact between two discs.
+/// One row per contact between two discs.
 fn contacts(frame: &Frame, facts: &RunFacts) -> FrameText {
     let contacts = frame.moment.contacts.iter().enumerate();
     let between_discs =
@@ -280,7 +281,7 @@ fn dump(
     FrameText { front: String::new(), head, rows: text }
 }
 
-/// What follows a component along y: readers ask for vectors of grains in space.
+/// The z component that follows a y component, because readers expect vectors in three dimensions.
 fn along_z(label: &str, name: &str) -> Option<&'static str> {
     match name {
         "y" if label == ATOMS => Some("z"),
@@ -289,7 +290,8 @@ fn along_z(label: &str, name: &str) -> Option<&'static str> {
     }
 }
 
-/// In which image of the cell each grain is, counted along x and y from the one that it started in. None without borders that wrap, and none where they shear: there its way is not so many cells.
+/// The periodic image of each grain, counted along x and y from its initial image. `None` without periodic borders, and
+/// for shearing borders, where the displacement is not a whole number of cells.
 fn images(moment: &Moment) -> Option<Vec<[i64; 2]>> {
     let cell = moment.surroundings.periodic.filter(|cell| cell.shear_rate == 0.0)?;
     let periods = cell.periods();
@@ -331,13 +333,13 @@ fn push(text: &mut String, name: &str, values: &Values, row: usize) {
     };
 }
 
-/// The number of the first word of a list.
+/// The number that stands for the first word of a list.
 fn first_code(name: &str) -> u32 {
     if name == "type" { FIRST_TYPE } else { 0 }
 }
 
-/// A line of what is known of the run and one of what the columns of each dump are: OVITO looks for the first frame in the
-/// first 20 lines alone, and takes a file for none of its formats if it is not there.
+/// One line with the facts about the run, and one line for each dump that describes its columns. OVITO looks for the
+/// first frame only in the first 20 lines and does not recognise the file otherwise.
 fn front(facts: &RunFacts, frame: &Frame) -> String {
     let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
     let facts = facts.collect::<Vec<_>>().join("; ");
@@ -360,7 +362,7 @@ fn front(facts: &RunFacts, frame: &Frame) -> String {
 fn head(moment: &Moment, label: &str, count: usize) -> String {
     let observables = &moment.observables;
     let ([min, max], radius) = bounds(moment);
-    // Periodic where the borders wrap, else as far as there is anything.
+    // Periodic along the axes with periodic borders, else shrink-wrapped around the discs.
     let periodic = moment.surroundings.periodic.unwrap_or_default();
     let [along_x, along_y] =
         periodic.periods().map(|period| if period.is_some() { "pp" } else { "ss" });
@@ -369,7 +371,7 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
         true => {
             format!("{along_x} {along_y} ss\n{:?} {:?}\n{:?} {:?}\n", min.x, max.x, min.y, max.y)
         }
-        // Of a leaning box: those of the upright one around it, and by how much it leans.
+        // A leaning box is given by the upright box around it, and its tilt.
         false => format!(
             "xy xz yz {along_x} {along_y} ss\n{:?} {:?} {tilt:?}\n{:?} {:?} 0.0\n",
             min.x + tilt.negative_part(),
@@ -390,7 +392,7 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
     )
 }
 
-/// What holds all discs that are not lost, along an axis whose borders wrap the cell, and the largest radius, m.
+/// A box around all discs that are not lost, or the whole cell along a periodic axis, and the largest radius, m.
 fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
     let grains = moment.grains.iter().filter(|grain| !grain.lost);
     let grains = grains.map(|grain| (grain.position, grain.radius));

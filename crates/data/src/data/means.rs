@@ -1,5 +1,5 @@
-//! Means over the time between two frames: the table of pairs, and what the tables of grains, walls and the pile have of
-//! such beside the moment. They are sums over all steps: pairs that have parted have their share.
+//! Means over the time between two frames: the table of pairs, and the mean columns of the tables of grains, walls and
+//! the pile. They come from sums over all steps, so pairs that have separated are included.
 
 use glam::{DMat2, DVec2};
 
@@ -11,7 +11,7 @@ use crate::column_spec::{ColumnSpec, column};
 use crate::granular::GrainMeasures;
 use crate::sim::{ForceSums, Moment, PairSum, Surroundings};
 
-/// Tables of means, or columns for those that there are.
+/// Tables of means, and columns of means for other tables.
 pub(super) struct Means {
     pub pairs: Table,
     pub grains: Table,
@@ -20,7 +20,7 @@ pub(super) struct Means {
 }
 
 impl Means {
-    /// `area` is that of the pile at the moment, m².
+    /// `area` is the area of the pile at the moment, m².
     pub(super) fn of(
         sums: &ForceSums,
         moment: &Moment,
@@ -28,7 +28,7 @@ impl Means {
         area: f64,
     ) -> Self {
         let ForceSums { secs, pairs, stresses, .. } = sums;
-        // Of a lost grain there is no cell.
+        // A lost grain has no cell.
         let mean = |stress: DMat2, area: f64| {
             stress * if area > 0.0 { 1.0 / (secs * area) } else { f64::NAN }
         };
@@ -46,7 +46,7 @@ impl Means {
             let torque = place_of(&wall, &moment.surroundings).perp_dot(impulse) - about_origin;
             WallMeans {
                 force: -impulse / *secs,
-                // What goes round has no one place to take it about.
+                // In a periodic scene there is no unique point for the torque.
                 torque: if periodic.is_none() { torque / *secs } else { f64::NAN },
                 work: if *secs > 0.0 { sums().map(|pair| pair.work).sum() } else { f64::NAN },
             }
@@ -69,7 +69,7 @@ struct PairTableRow {
     id: u32,
     other_id: u64,
     kind: u32,
-    /// Place in the list of names.
+    /// Index in the list of names.
     name: u32,
     sum: PairSum,
 }
@@ -114,7 +114,7 @@ fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
 }
 
 impl Table {
-    /// A row a pair that has transmitted anything.
+    /// One row per pair that has transmitted a force.
     pub fn of_pairs(sums: &ForceSums, moment: &Moment) -> Self {
         pairs_table(sums, moment)
     }
@@ -128,7 +128,7 @@ fn some(number: f64) -> Option<f64> {
     (!number.is_nan()).then_some(number)
 }
 
-/// σ of a mean f ⊗ ℓ.
+/// Mean stress σ, the mean of f ⊗ ℓ divided by the area.
 const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = &[
     column(
         "mean_stress_xx",

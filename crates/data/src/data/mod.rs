@@ -1,9 +1,8 @@
-//! Recordings on disk: what every grain and every contact did, as tables in files that other programs read.
+//! Recordings on disk: tables of all grains and contacts, in files that other programs can read.
 //!
-//! A [`Recording`] takes moments of a run and what its steps measure. A [`Frame`] is one moment as tables of
-//! named columns with units, and a `Format` is a way to write frames. What a column is called and what it
-//! holds is said once, in `columns`; every format writes all of them. [`read_grains`] takes the grains out
-//! of CSV and Parquet again.
+//! A [`Recording`] receives moments of a run and the measurements of its steps. A [`Frame`] is one moment as tables of
+//! named columns with units, and a `Format` writes frames to files. The names and meanings of columns are declared
+//! once, in `columns`; every format writes all of them. [`read_grains`] reads the grains back from CSV and Parquet.
 
 mod columns;
 mod csv;

@@ -1,15 +1,15 @@
-//! The names that tables of contacts and of pairs give to body j.
+//! Names of body j in the tables of contacts and of pairs.
 
 use crate::sim::{Moment, OtherBody};
 
 /// Words of the column `kind_j`.
 pub(super) const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
-/// How tables call bodies j.
+/// Kinds, numbers and names of bodies j for tables.
 pub(super) struct OtherBodies<'a> {
     moment: &'a Moment,
     first_boundary: u64,
-    /// Shapes and numbers of boundaries, behind a name that is none.
+    /// An empty name, followed by the shapes and numbers of the boundaries.
     pub names: Vec<String>,
 }
 
@@ -25,7 +25,7 @@ impl<'a> OtherBodies<'a> {
         }
     }
 
-    /// Place of its kind's word, number, and place of its name.
+    /// Index of the word for its kind, number, and index of its name.
     pub(super) fn told(&self, other: OtherBody) -> (u32, u64, u32) {
         match other {
             OtherBody::Grain(number) => (0, self.moment.id(number).into(), 0),

@@ -1,4 +1,4 @@
-//! A recording: what a run tells of itself goes to files while it goes on.
+//! A recording: writes the measurements and moments of a run to files while it runs.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -14,21 +14,21 @@ use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{ForceSums, Moment, Observables, Simulation};
 
-/// Simulated time between two frames where nothing is said, s: that of pictures.
+/// Default simulated time between two frames, s; the same as between pictures.
 const DEFAULT_EVERY_SECS: f64 = 0.04;
-/// Messages that wait for being written. Memory is bounded by the frames among them; fewer would have the
-/// run wait for a disk that is busy for a moment.
+/// Number of messages that may wait to be written. Frames among them take memory. With fewer, the run would wait for a
+/// disk that is busy for a moment.
 const MOST_WAITING: usize = 4;
-/// Rows of steps that wait for being sent.
+/// Number of step rows that may wait to be sent.
 const MOST_ROWS: usize = 1024;
-/// Frames that are taken before files are written anew, where the run is faster than the disk. More: more
-/// is lost when the program is killed.
+/// Frames between two writes of the files if the run is faster than the disk. If it is larger, more is lost when the
+/// program is killed.
 const FRAMES_AT_ONCE: usize = 8;
 
-/// A recording that grows with a run.
+/// A recording that grows during a run.
 ///
-/// Frames are written by a thread of its own; what goes wrong there is told by the next call. Memory does
-/// not grow with the run: where the disk is too slow, the run waits.
+/// A separate thread writes the frames. If writing fails there, the next call returns the error. Memory does not grow
+/// with the run: if the disk is too slow, the run waits.
 ///
 /// ```
 /// use slump_data::data::{RunFacts, FormatName, Recording};
@@ -47,30 +47,30 @@ const FRAMES_AT_ONCE: usize = 8;
 /// ```
 pub struct Recording {
     folder: RecordingFolder,
-    /// Rows that wait for the next frame.
+    /// Rows that are sent with the next frame.
     rows: Vec<Observables>,
     frames: u64,
-    /// Step of the last frame that was there when it was resumed.
+    /// Step of the last frame that existed when the recording was resumed.
     last_step: Option<u64>,
     schedule: Option<FrameSchedule>,
-    /// None once the recording has ended, be it by an error.
+    /// `None` once the recording has ended, also after an error.
     writer: Option<WriterThread>,
-    /// What pairs have transmitted since the last frame.
+    /// Sums of the forces of pairs since the last frame.
     sums: ForceSums,
 }
 
-/// The thread that writes.
+/// The thread that writes, and its message channel.
 struct WriterThread {
     sender: SyncSender<RecordingMessage>,
     thread: JoinHandle<Result<()>>,
 }
 
 impl Recording {
-    /// Starts a recording in a folder, which is made where it is not there. An earlier one is removed with
-    /// `overwrite` and refused without.
+    /// Starts a recording in a folder, which is created if missing. An existing recording is removed if `overwrite` is
+    /// true, and refused otherwise.
     ///
     /// # Errors
-    /// Where the folder cannot be written to, or another recording is being written or lies there.
+    /// If the folder cannot be written to, another process is recording into it, or it contains a recording.
     pub fn start(
         folder: &Path,
         formats: &[FormatName],
@@ -80,10 +80,10 @@ impl Recording {
         Self::start_in(RecordingFolder::of(folder, overwrite)?, formats, facts)
     }
 
-    /// Starts a recording in a folder that has been taken.
+    /// Starts a recording in a folder that is already locked.
     ///
     /// # Errors
-    /// Where the folder cannot be written to.
+    /// If the folder cannot be written to.
     pub fn start_in(
         folder: RecordingFolder,
         formats: &[FormatName],
@@ -91,18 +91,18 @@ impl Recording {
     ) -> Result<Self> {
         formats.iter().try_for_each(|&format| check_format(format))?;
         folder.clear()?;
-        // First of all: it is by this that others know a recording.
+        // The manifest comes first: other programs identify a recording by it.
         write_manifest(folder.path(), formats, facts)?;
         let writer = FormatsWriter::start(folder.path(), formats, facts)?;
         Self::with(folder, writer, 0, None)
     }
 
-    /// Resumes the recording in a folder, for a run that is resumed at a step, at which the recording had as much as
-    /// `mark` says. Later rows are dropped. Without a recording there one is started.
+    /// Resumes the recording in a folder, for a run that resumes at a step at which the recording had the extent
+    /// `mark`. Later rows are dropped. Without an existing recording a new one is started.
     ///
     /// # Errors
-    /// As [`Recording::start`], and if a file is not as this version writes it, or has lost anything of that.
-    /// Then nothing is changed.
+    /// As [`Recording::start`], and if a file differs from the format of this version or has lost a part of that
+    /// extent. Then nothing is changed.
     pub fn go_on(
         folder: &Path,
         formats: &[FormatName],
@@ -118,10 +118,10 @@ impl Recording {
         Self::with(folder, writer, kept.rows, kept.step)
     }
 
-    /// Checks that [`Recording::go_on`] will find all that it needs.
+    /// Checks that [`Recording::go_on`] will succeed.
     ///
     /// # Errors
-    /// As those of [`Recording::go_on`].
+    /// As [`Recording::go_on`].
     pub fn check(
         folder: &Path,
         formats: &[FormatName],
@@ -154,48 +154,48 @@ impl Recording {
         Ok(Self { folder, rows, frames, last_step, schedule: None, writer, sums })
     }
 
-    /// What pairs have transmitted since the last frame: a run that goes on from a saved state hands it back to
+    /// Sums of the forces of pairs since the last frame. A run that resumes from a saved state passes them to
     /// [`Recording::with_sums`].
     pub fn sums(&self) -> &ForceSums {
         &self.sums
     }
 
-    /// Has means of the next frame begin with what there was.
+    /// Continues the means of the next frame from these sums.
     pub fn with_sums(mut self, sums: ForceSums) -> Self {
         self.sums = sums;
         self
     }
 
-    /// Where it is.
+    /// The folder of the recording.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Frames that it has been given.
+    /// Number of frames added so far.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Adds what a step measured.
+    /// Adds the measurements of a step.
     ///
     /// # Errors
-    /// Where something before could not be written.
+    /// If an earlier write failed.
     pub fn add_step(&mut self, observables: &Observables) -> Result<()> {
         self.rows.push(*observables);
         let has_failed = self.writer.as_ref().is_some_and(|writer| writer.thread.is_finished());
         if self.rows.len() < MOST_ROWS && !has_failed { Ok(()) } else { self.send_rows() }
     }
 
-    /// Adds what pairs transmitted in the last step to the means of the next frame. To be called at the start and after
-    /// each step, once or more often.
+    /// Adds the forces of pairs in the last step to the means of the next frame. Call it at the start and after each
+    /// step; more than one call per step has no further effect.
     pub fn follow(&mut self, simulation: &Simulation) {
         self.sums.follow(simulation);
     }
 
-    /// Adds a frame, the first after the last of those before.
+    /// Adds a frame. Its step must be later than those of the frames before.
     ///
     /// # Errors
-    /// Where something before could not be written.
+    /// If an earlier write failed.
     pub fn add(&mut self, moment: Moment) -> Result<()> {
         self.send_rows()?;
         let taken = Box::new((moment, self.sums.take()));
@@ -204,8 +204,8 @@ impl Recording {
         Ok(())
     }
 
-    /// Has frames made at the steps nearest to some times of a run that is at this state, by
-    /// [`Recording::add_if_due`]. Where the recording is gone on with, it has those up to here.
+    /// Makes [`Recording::add_if_due`] add frames at the steps nearest to some times of the run, which is now in this
+    /// state. In a resumed recording the frames up to now exist already.
     pub fn at(mut self, times: Times, simulation: &Simulation) -> Self {
         let mut schedule = FrameSchedule::new(times);
         if self.last_step.is_some() {
@@ -215,33 +215,33 @@ impl Recording {
         self
     }
 
-    /// Adds a frame of the present state where one is due, which it always is unless [`Recording::at`] was told times.
-    /// To be called at the start and after each step, which it follows.
+    /// Adds a frame of the present state if one is due. Without [`Recording::at`], a frame is always due. Also calls
+    /// [`Recording::follow`]. Call it at the start and after each step.
     ///
     /// # Errors
-    /// Where something before could not be written.
+    /// If an earlier write failed.
     pub fn add_if_due(&mut self, simulation: &Simulation) -> Result<()> {
         self.follow(simulation);
         let is_due = self.schedule.as_mut().is_none_or(|schedule| schedule.is_due(simulation));
         if is_due { self.add(simulation.moment()) } else { Ok(()) }
     }
 
-    /// Waits until readers find everything, and gives how much that is.
+    /// Waits until readers can find everything, and returns the extent of the recording.
     ///
     /// # Errors
-    /// Where something could not be written.
+    /// If something could not be written.
     pub fn flush(&mut self) -> Result<RecordingMark> {
         self.send_rows()?;
         let (done, answer) = sync_channel(1);
         self.send(RecordingMessage::Flush(done))?;
-        // No answer comes where the writer has failed, which is told here.
+        // No reply comes if the writer has failed; `end` then returns its error.
         answer.recv().or_else(|_| self.end().map(|()| RecordingMark::default()))
     }
 
     /// Ends the recording.
     ///
     /// # Errors
-    /// Where something could not be written.
+    /// If something could not be written.
     pub fn finish(mut self) -> Result<()> {
         self.send_rows()?;
         self.end()
@@ -263,7 +263,7 @@ impl Recording {
         }
     }
 
-    /// Has the thread end, and tells what went wrong there, once.
+    /// Ends the thread and returns its error, once.
     fn end(&mut self) -> Result<()> {
         let Some(WriterThread { sender, thread }) = self.writer.take() else { return Ok(()) };
         drop(sender);
@@ -273,7 +273,7 @@ impl Recording {
 
 impl Drop for Recording {
     fn drop(&mut self) {
-        // Before the folder is free for others. Whoever wants to know what went wrong calls `finish`.
+        // The thread must end before the folder is unlocked for others. `finish` reports errors, this does not.
         if let Some(WriterThread { sender, thread }) = self.writer.take() {
             drop(sender);
             let _ = thread.join();
@@ -283,24 +283,24 @@ impl Drop for Recording {
 
 enum RecordingMessage {
     Steps(Vec<Observables>),
-    /// A frame, by the number of those before.
+    /// A frame, with the number of earlier frames.
     Frame(u64, Box<(Moment, ForceSums)>),
-    /// Everything is to be written before this is answered.
+    /// A request to write everything before replying.
     Flush(SyncSender<RecordingMark>),
 }
 
-/// Writes every format on a thread of its own, and the list of frames that every format has.
+/// Writes all formats, on a separate thread, and the list of frames that all formats have.
 struct FormatsWriter {
     formats: Vec<Box<dyn Format>>,
     index: TextTable,
-    /// Frames that formats have taken and may not have written.
+    /// Frames that the formats have received but may not have written.
     waiting: Vec<FrameRow>,
-    /// How much they have taken.
+    /// Extent of the data that the formats have received.
     mark: RecordingMark,
 }
 
 impl FormatsWriter {
-    /// Starts in a folder that has no recording, or goes on with the one that is there.
+    /// Starts in a folder without a recording, or opens the existing recording.
     fn start(folder: &Path, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
         let formats = formats.iter().map(|format| start_format(*format, folder, facts));
         let formats = formats.collect::<Result<_>>()?;
@@ -308,7 +308,7 @@ impl FormatsWriter {
         Ok(Self { formats, index, waiting: Vec::new(), mark: RecordingMark::default() })
     }
 
-    /// Checks that there is as much as `mark` says of a step, and gives the frames of that.
+    /// Checks that the recording has the extent `mark` at a step, and returns its frames.
     fn check(&self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let (kept, _) = self.index.rows_there(Some(step), mark.frames)?;
         if kept.rows < mark.frames {
@@ -322,8 +322,8 @@ impl FormatsWriter {
         Ok(kept)
     }
 
-    /// Drops all that was recorded after a step, at which there was as much as `mark` says; drops nothing if
-    /// something of that is missing.
+    /// Drops everything that was recorded after a step, at which the recording had the extent `mark`. If a part of that
+    /// is missing, drops nothing.
     fn roll_back(&mut self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let kept = self.check(step, mark)?;
         self.index.roll_back(kept.step)?;
@@ -333,14 +333,13 @@ impl FormatsWriter {
         Ok(kept)
     }
 
-    /// Writes what comes until no more can come. What fails ends the recording; what was written before
-    /// stays.
+    /// Writes messages until the channel closes. An error ends the recording, but data written before it remains.
     fn run(mut self, messages: &Receiver<RecordingMessage>) -> Result<()> {
         let taken = self.take_all(messages);
-        // Where a frame could not be taken, those before it are whole.
+        // If a frame could not be added, the frames before it are complete.
         let flushed = if self.waiting.is_empty() { Ok(()) } else { self.flush() };
         let written = taken.and(flushed);
-        // Each is tried, whatever became of those before.
+        // Every format is finished, even if others failed.
         let finished: Vec<_> = self.formats.iter_mut().map(|format| format.finish()).collect();
         written.and(finished.into_iter().collect())
     }
@@ -377,7 +376,7 @@ impl FormatsWriter {
             }
             RecordingMessage::Flush(done) => {
                 self.flush()?;
-                // Whoever asked may have gone.
+                // The receiver of the reply may be gone.
                 let _ = done.send(self.mark);
                 Ok(())
             }
@@ -395,14 +394,14 @@ impl FormatsWriter {
 /// The simulated times of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Times {
-    /// From 0 on, with so many seconds from one to the next.
+    /// From 0 on, with this interval, s.
     Every(f64),
-    /// At these times, s, rising.
+    /// At these times, s, in ascending order.
     At(Vec<f64>),
 }
 
 impl Times {
-    /// Those of the frames, where nothing but a rate is asked for.
+    /// The times for these settings: frames at a constant rate.
     pub fn of(settings: &DataSettings) -> Self {
         Self::Every(settings.every_secs.unwrap_or(DEFAULT_EVERY_SECS))
     }
@@ -421,27 +420,27 @@ impl FrameSchedule {
         Self { times, next: 0 }
     }
 
-    /// True if a frame is to be made of the present state. Steps are to be asked for in turn.
+    /// True if a frame of the present state is due. Call it once for each step, in order.
     pub fn is_due(&mut self, simulation: &Simulation) -> bool {
         let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
         let step = simulation.observables().step;
         self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
     }
 
-    /// True if one is due after a step that stands for all times up to `latest_secs`.
+    /// True if a frame is due after a step that represents all times up to `latest_secs`.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {
             due = true;
             let before = self.next;
             self.next = match self.times {
-                // Not one by one: there may be many in one step.
+                // In one operation, because many frames may fall into a single step.
                 Times::Every(secs) => {
                     before.saturating_add(1).max((latest_secs / secs).floor() as usize)
                 }
                 Times::At(_) => before + 1,
             };
-            // More than can be counted: one is due in each step.
+            // The count has reached its maximum: a frame is due in every step.
             if self.next == before {
                 break;
             }

@@ -1,5 +1,5 @@
-//! The folder of a recording: which of its files are a recording's, the lock by which it is one recording's alone,
-//! and `data.json`, which says what a recording is made of.
+//! The folder of a recording: the names of its files, the lock that reserves it for one recording, and `data.json`,
+//! which describes the recording.
 
 use std::path::{Path, PathBuf};
 
@@ -16,10 +16,10 @@ use crate::output::{
 };
 use crate::scene::FormatName;
 
-/// What a recording is made of.
+/// File that lists the contents of a recording.
 const MANIFEST: &str = "data.json";
 
-/// A folder that no other recording is written to while this is there.
+/// A folder that is locked against other recordings until this value is dropped.
 pub struct RecordingFolder {
     path: PathBuf,
     overwrite: bool,
@@ -27,11 +27,11 @@ pub struct RecordingFolder {
 }
 
 impl RecordingFolder {
-    /// Makes the folder where it is not there, and takes it.
+    /// Creates the folder if it is missing, and locks it.
     ///
     /// # Errors
-    /// Where it cannot be written to, another recording is being written to it, or, without `overwrite`, an
-    /// earlier one is there.
+    /// If it cannot be written to, another process is recording into it, or it contains a recording and `overwrite` is
+    /// false.
     pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
         let folder = Self::lock(path)?;
         let files = files_of_a_recording(path)?;
@@ -48,7 +48,7 @@ impl RecordingFolder {
         Ok(Self { overwrite, ..folder })
     }
 
-    /// Takes a folder to go on with the recording that is there, but for what a kill left of its files.
+    /// Locks a folder to resume its recording, and removes the drafts that a killed process left.
     ///
     /// # Errors
     /// As [`RecordingFolder::of`].
@@ -66,12 +66,12 @@ impl RecordingFolder {
         Ok(Self { path: path.to_owned(), overwrite: false, _lock: lock })
     }
 
-    /// The folder.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Removes an earlier recording, where that was asked for.
+    /// Removes an existing recording if `overwrite` is true.
     pub(super) fn clear(&self) -> Result<()> {
         if !self.overwrite {
             return Ok(());
@@ -80,10 +80,10 @@ impl RecordingFolder {
     }
 }
 
-/// Removes the recording in a folder, and the folders in which nothing is left. What this program did not write stays.
+/// Removes the recording in a folder, and then its empty folders. Files of other programs remain.
 ///
 /// # Errors
-/// Where another recording is being written to it, or a file cannot be removed.
+/// If another process is recording into it, or a file cannot be removed.
 pub fn remove_recording(path: &Path) -> Result<()> {
     let folder = RecordingFolder::lock(path)?;
     for file in files_of_a_recording(path)? {
@@ -95,14 +95,14 @@ pub fn remove_recording(path: &Path) -> Result<()> {
     drop(folder);
     for inner in tables.chain([csv::FOLDER, vtk::BODIES.name, vtk::FIELDS.name, lammps::FOLDER, ""])
     {
-        // One that is not empty stays.
+        // A folder that is not empty remains.
         let _ = std::fs::remove_dir(path.join(inner));
     }
     Ok(())
 }
 
-/// The files of a recording that are in a folder, whatever its formats and whatever this build can write, and what a
-/// kill left of such.
+/// All files of a recording in a folder, for every format, including formats that this build cannot write, and drafts
+/// that a killed process left.
 fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
     let tables: Vec<_> = empty_tables().map(|table| table.name).collect();
     let mut all = files_named(folder, |name| [MANIFEST, FRAMES].contains(&name))?;
@@ -119,7 +119,7 @@ fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// True if a file is what a kill left of one.
+/// True if a file is a draft that a killed process left.
 fn is_left(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
     name.is_some_and(|name| final_name(name) != name)
@@ -145,10 +145,10 @@ pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFac
     write_file(&path, text.as_bytes())
 }
 
-/// Refuses to go on with a recording in other formats.
+/// Refuses to resume a recording with other formats.
 pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()> {
     let path = folder.join(MANIFEST);
-    // Without one there is no recording yet.
+    // Without a manifest there is no recording yet.
     let Ok(text) = std::fs::read(&path) else { return Ok(()) };
     let manifest: Value = serde_json::from_slice(&text)
         .map_err(|error| Error::unread(&path, error, "the manifest of a recording"))?;
@@ -160,7 +160,7 @@ pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()
     Err(Error::value("data-format", names.join(","), allowed))
 }
 
-/// Facts about the scene of a recording, by name; `path` is its folder or a table of it. None without a recording.
+/// Facts about the scene of a recording, by name; `path` is its folder or a table in it. `None` without a recording.
 pub(crate) fn facts_of_recording(path: &Path) -> Option<Map<String, Value>> {
     let mut manifests = path.ancestors().take(3).map(|folder| folder.join(MANIFEST));
     let text = manifests.find_map(|path| std::fs::read(path).ok())?;

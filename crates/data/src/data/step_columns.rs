@@ -1,4 +1,4 @@
-//! The columns of the table of steps: what each step measured.
+//! The columns of the table of steps: the measurements of each step.
 
 use crate::column_spec::CellValue::{Count, Flag, Number, SomeNumber};
 use crate::column_spec::{ColumnSpec, column};
@@ -33,7 +33,8 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "velocity_error",
         "m/s",
-        "how far velocities are taken to be from Coulomb's law: root mean square, weighted with mass, over the grains that touch something",
+        "how far velocities are taken to be from Coulomb's law: root mean square, weighted with mass, over the \
+            grains that touch something",
         Number(|row| row.velocity_error),
     ),
     column("contacts", "", "contacts", Count(|row| row.contacts.into())),

@@ -1,4 +1,4 @@
-//! Tables of named columns, whatever writes them.
+//! Tables of named columns, independent of file formats.
 
 #[cfg(feature = "data")]
 use crate::column_spec::STEP;
@@ -7,22 +7,22 @@ use crate::column_spec::{CellValue, ColumnSpec};
 /// A table: columns of one length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Its name, a part of names of files: `grains`.
+    /// Name, which is a part of file names: `grains`.
     pub name: &'static str,
-    /// Its columns, in the order in which files have them.
+    /// Columns, in the order of the files.
     pub columns: Vec<Column>,
 }
 
 /// One column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// As files call it.
+    /// Name in files.
     pub name: &'static str,
-    /// Its unit, `1` for what has none, empty for what is no quantity.
+    /// Unit; `1` for a dimensionless quantity, empty if the column is not a quantity.
     pub unit: &'static str,
-    /// What it is, in a few words.
+    /// Description, in a few words.
     pub about: &'static str,
-    /// A value a row.
+    /// One value per row.
     pub values: Values,
 }
 
@@ -35,18 +35,18 @@ pub enum Values {
     SomeNumbers(Vec<Option<f64>>),
     /// Whole numbers: identities and counts.
     Counts(Vec<u64>),
-    /// True, false, or neither where a law knows no such thing.
+    /// True or false; `None` if the contact law does not define it.
     Flags(Vec<Option<bool>>),
     /// Words of a short list.
     Words {
         /// The list.
         words: Vec<String>,
-        /// Of each row, its word's place in the list.
+        /// The index of each row's word in `words`.
         codes: Vec<u32>,
     },
 }
 
-/// Does the same with the list of values, of whatever kind it is.
+/// Runs the same code on the list of values, for every kind.
 macro_rules! each_kind {
     ($values:expr, $list:ident => $work:expr) => {
         match $values {
@@ -70,7 +70,7 @@ impl Values {
         self.len() == 0
     }
 
-    /// The number of a row; not a number where it has none.
+    /// The number of a row; NaN if it has none.
     pub(super) fn number(&self, row: usize) -> f64 {
         match self {
             Self::Numbers(numbers) => numbers[row],
@@ -86,7 +86,7 @@ impl Values {
         words.get(codes[row] as usize).map(String::as_str)
     }
 
-    /// The same with further rows, up to so many, that have nothing; counts are numbers, so that there may be none.
+    /// These values extended to `rows` rows, with empty values at the end. Counts become numbers, which can be missing.
     pub(super) fn padded(self, rows: usize) -> Self {
         match self {
             Self::SomeNumbers(mut numbers) => {
@@ -122,7 +122,7 @@ impl Values {
     }
 }
 
-/// The place of a word in a list, at whose end it is put where it is not there.
+/// The index of a word in a list. If it is missing, it is added at the end.
 pub(super) fn place_of(words: &mut Vec<String>, word: &str) -> u32 {
     let known = words.iter().position(|known| known == word);
     known.unwrap_or_else(|| {
@@ -132,15 +132,15 @@ pub(super) fn place_of(words: &mut Vec<String>, word: &str) -> u32 {
 }
 
 impl Column {
-    /// Unit and meaning under the name that a file has for it, as `gap [m]: distance of the surfaces`, for formats
-    /// that have no place of their own for it.
+    /// Unit and meaning below the file's name for the column, such as `gap [m]: distance of the surfaces`, for formats
+    /// that have no separate place for them.
     pub(super) fn described(&self, name: &str) -> String {
         let Self { unit, about, .. } = self;
         let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
         format!("{name}{unit}: {about}")
     }
 
-    /// The same where words are numbers, the first of them `first_code`.
+    /// Like `described`, for formats that write words as numbers, the first of them `first_code`.
     pub(super) fn described_with_codes(&self, name: &str, first_code: u32) -> String {
         let codes = match &self.values {
             Values::Words { words, .. } => {
@@ -156,7 +156,7 @@ impl Column {
 }
 
 impl Table {
-    /// The table of some rows, with the list of names that they refer to.
+    /// A table of rows, with the list of names that they refer to.
     pub(super) fn new<Row>(
         name: &'static str,
         specs: &[ColumnSpec<Row>],
@@ -185,7 +185,8 @@ impl Table {
         Self { name, columns: columns.collect() }
     }
 
-    /// The same with further columns; where these have fewer rows, the others have nothing.
+    /// This table with the columns of another table added. If that table has fewer rows, its remaining values are
+    /// empty.
     pub(super) fn beside(mut self, more: Self) -> Self {
         let rows = self.len();
         self.columns.extend(more.columns.into_iter().map(|mut column| {
@@ -211,17 +212,17 @@ impl Table {
     }
 }
 
-/// Tables whose rows become more, and fewer again.
+/// Tables that grow and are cut back.
 #[cfg(feature = "data")]
 impl Table {
-    /// Adds the rows of a table of the same columns.
+    /// Adds the rows of a table with the same columns.
     pub(super) fn append(&mut self, other: &Self) {
         for (column, other) in self.columns.iter_mut().zip(&other.columns) {
             column.values.append(&other.values);
         }
     }
 
-    /// The steps of the rows.
+    /// The step of each row.
     pub(super) fn steps(&self) -> &[u64] {
         match self.column(STEP).map(|column| &column.values) {
             Some(Values::Counts(steps)) => steps,
@@ -229,7 +230,7 @@ impl Table {
         }
     }
 
-    /// Drops the rows after a step, or all.
+    /// Drops the rows after a step, or all rows.
     pub(super) fn keep_until(&mut self, step: Option<u64>) {
         let rows = self.steps().partition_point(|&there| Some(there) <= step);
         self.truncate(rows);
@@ -242,7 +243,7 @@ impl Table {
         }
     }
 
-    /// Bytes that it takes where nothing is compressed, about.
+    /// Approximate size without compression, bytes.
     pub(super) fn size(&self) -> usize {
         let width = |column: &Column| match column.values {
             Values::Numbers(_) | Values::SomeNumbers(_) | Values::Counts(_) => 8,

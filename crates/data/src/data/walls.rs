@@ -1,7 +1,7 @@
-//! The table of walls: what no grain moves, each as the rigid body that it goes as.
+//! The table of walls: boundaries and fixed discs, one row per rigid body.
 //!
-//! A motion is a wall with all that it moves; a boundary that none moves is one, and all fixed discs that none moves are
-//! one. Forces are those of the contacts, the means over the step.
+//! A motion, with everything that it moves, is one wall. Each boundary without a motion is one wall, and all fixed
+//! discs without a motion together are one wall. Forces are contact forces, averaged over the step.
 
 use glam::DVec2;
 
@@ -15,10 +15,10 @@ struct WallTableRow {
     step: u64,
     time_secs: f64,
     id: u64,
-    /// Place in the list of names.
+    /// Index in the list of names.
     name: u32,
     motion: Option<f64>,
-    /// What goes as one.
+    /// The boundaries and discs of the wall, and its motion.
     wall: MotionView,
     place: DVec2,
     force: DVec2,
@@ -90,7 +90,7 @@ const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = &[
 ];
 
 impl Table {
-    /// A row a wall.
+    /// One row per wall.
     pub fn of_walls(moment: &Moment) -> Self {
         let walls = walls(&moment.surroundings).into_iter().enumerate();
         let rows = walls.map(|(number, (wall, motion))| row(moment, number, motion, wall));
@@ -103,7 +103,7 @@ impl Table {
     }
 }
 
-/// The fixed discs as their motions have them go.
+/// The fixed discs, with the velocities of their motions.
 pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> + '_ {
     let surroundings = &moment.surroundings;
     surroundings.fixed_discs.iter().enumerate().map(|(number, disc)| {
@@ -124,10 +124,10 @@ pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> +
     })
 }
 
-/// What goes as one, and the number of its motion.
+/// Each wall with the number of its motion, if it has one.
 pub(super) fn walls(surroundings: &Surroundings) -> Vec<(MotionView, Option<f64>)> {
     let Surroundings { boundaries, fixed_discs, moving, .. } = surroundings;
-    // Pistons come first and are no motions.
+    // Pistons come first in the list and are not numbered motions.
     let by_themselves = boundaries.iter().filter(|shape| matches!(shape, Boundary::Piston { .. }));
     let first_motion = by_themselves.count().min(moving.len());
     let moves = |is_it: &dyn Fn(&MotionView) -> bool| moving.iter().any(is_it);
@@ -164,7 +164,7 @@ fn row(
     let secs = moment.observables.time_step_secs;
     let (mut force, mut torque, mut work) = (DVec2::ZERO, 0.0, 0.0);
     for contact in moment.contacts.iter().filter(|contact| is_of(contact.other, &wall)) {
-        // Where the grain was when the forces were.
+        // Position of the contact when the forces acted, before the grain moved on.
         let touched = contact.point - secs * moment.grains[contact.grain as usize].velocity;
         let offset = touched - place;
         let offset = periodic.map_or(offset, |periodic| periodic.shortest(offset));
@@ -189,7 +189,7 @@ fn row(
     (row, name)
 }
 
-/// Where a wall is, m: its pivot if it turns, or a point of its first boundary, or its first disc.
+/// Reference point of a wall, m: its pivot if it turns, else a point of its first boundary, else its first disc.
 pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 {
     let Surroundings { boundaries, fixed_discs, .. } = surroundings;
     let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));
@@ -198,7 +198,7 @@ pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 
     if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() }
 }
 
-/// True where a body goes as part of a wall.
+/// True if a body is a part of a wall.
 pub(super) fn is_of(body: OtherBody, wall: &MotionView) -> bool {
     match body {
         OtherBody::Grain(_) => false,

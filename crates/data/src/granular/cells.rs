@@ -1,21 +1,22 @@
-//! The cell of each grain: the room that is nearer to it than to any other, as far as it belongs to the packing.
+//! The cell of each grain: the region that is nearer to it than to any other disc, as far as it belongs to the packing.
 //!
-//! *Power cells.* Near is measured by the power |p − x|² − r² of a point to a disc (Laguerre, also radical, tessellation;
-//! F. Aurenhammer, *Power Diagrams*, SIAM J. Comput. 16, 1987). Where radii differ, cells of the plain Voronoi diagram
-//! cut through larger discs; those of the power diagram part two discs that touch at their contact point, so that each
-//! disc lies in its cell but for overlaps. Where radii are equal, both are the same. Fixed discs have cells, too, which
-//! are no grain's.
+//! *Power cells.* Distance is measured by the power |p − x|² − r² of a point with respect to a disc (Laguerre, also
+//! radical, tessellation; F. Aurenhammer, *Power Diagrams*, SIAM J. Comput. 16, 1987). If radii differ, cells of the
+//! plain Voronoi diagram cut through larger discs. The power diagram separates two touching discs at their contact
+//! point, so each disc lies in its cell except for overlaps. For equal radii both diagrams are the same. Fixed discs
+//! also have cells, which do not count for any grain.
 //!
-//! *Walls.* A side of a boundary cuts along its line the cells of grains that stand before it, between its ends. Where a
-//! grain stands before no side of a boundary, the corner that it is nearest to cuts across the line from the grain's
-//! centre. So no cell reaches into a solid or through a wall, and a wall that ends takes a little of what lies around
-//! its end. *Across periodic borders* the images of discs and walls cut cells as they do themselves.
+//! *Walls.* A side of a boundary cuts the cells of the grains in front of it, between its ends, along its line. If a
+//! grain is not in front of any side of a boundary, the boundary's nearest corner cuts its cell, perpendicular to the
+//! line from the grain's centre. So no cell reaches into a solid or through a wall, and a wall that ends takes a little
+//! of the region around its end. *Periodic borders.* The images of discs and walls cut cells like the originals.
 //!
-//! *How far.* A point belongs to the packing if its power to the nearest grain is below 3r̄², r̄ the mean radius: in a
-//! pore between grains of that radius which is just large enough for one more, the middle is the first point that does
-//! not. A cell with corners beyond is open: it lies at a free surface or at a hole, and says nothing of how densely
-//! grains are packed. Its area counts up to that border and inside of the box around all grains, so that a packing with
-//! straight sides and no hole has just its box, whether there are walls at its sides or not.
+//! *Extent of the packing.* A point belongs to the packing if its power with respect to the nearest grain is below
+//! 3r̄², where r̄ is the mean radius. If grains of that radius surround a pore that is just large enough for one more
+//! grain, the centre of the pore is the first point outside. A cell with corners outside is open: it lies at a free
+//! surface or at a hole and says nothing about the density of the packing. The part of its area that counts is bounded
+//! by this limit and by the box around all grains. A packing with straight sides and without holes therefore fills
+//! exactly its box, whether there are walls at its sides or not.
 
 use std::f64::consts::PI;
 
@@ -27,30 +28,31 @@ use crate::contact::BroadPhase;
 use crate::sim::{GrainState, Surroundings};
 use crate::world::{Boundary, Edge, Periodic};
 
-/// The border of the packing: the largest power to the nearest grain, in squares of the mean radius. Smaller: loose
-/// packings have open cells inside; larger: more of the air above a free surface counts.
+/// Limit of the packing: the largest power with respect to the nearest grain, in squares of the mean radius. If it is
+/// smaller, loose packings have open cells inside. If it is larger, more of the air above a free surface counts.
 const LARGEST_POWER: f64 = 3.0;
 
-/// How much nearer than the border a closed cell's corners are, as a part of the distance squared: rounding.
+/// Relative margin in the squared distance by which the corners of a closed cell lie within the limit; it covers
+/// rounding.
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {
-    /// Areas, m²; NaN for a grain that does not count.
+    /// Areas of the cells, m²; NaN for a grain that does not count.
     pub areas: Vec<f64>,
-    /// Area of a grain's disc in that of its cell; NaN where the cell is not closed.
+    /// Area of a grain's disc divided by that of its cell; NaN if the cell is not closed.
     pub solid_fractions: Vec<f64>,
-    /// Σ areas of cells, m².
+    /// Sum of the areas of all cells, m².
     pub area: f64,
     /// Area of the box around all grains, m²; NaN without grains.
     pub box_area: f64,
     /// Σ πr² over all grains, m².
     pub disc_area: f64,
     pub closed: u32,
-    /// Σ πr² over the grains with closed cells, in Σ areas of those; NaN without any.
+    /// Σ πr² over the grains with closed cells, divided by the areas of those cells; NaN without closed cells.
     pub solid_fraction: f64,
 }
 
-/// Corners of the upright box around all grains, without end across periodic borders.
+/// Corners of the upright box around all grains, unbounded across periodic borders.
 #[derive(Clone, Copy)]
 struct GrainBox {
     low: DVec2,
@@ -110,7 +112,7 @@ impl PowerCells {
     }
 }
 
-/// The grains that count, with their indices, and after them the fixed discs.
+/// The grains that count, with their indices, followed by the fixed discs.
 fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Site>) {
     let (indices, grains): (Vec<usize>, Vec<&GrainState>) = network.grains().unzip();
     let mean_radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
@@ -125,13 +127,13 @@ fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Sit
     (indices, grains.chain(fixed).map(site).collect())
 }
 
-/// The line of equal powers, as it cuts the cell of the first site.
+/// The line of equal powers, as a cut of the first site's cell.
 fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     let (site, other) = (&sites[first], &sites[second]);
     let branch = other.position - site.position;
     let distance = branch.length();
     if distance == 0.0 {
-        // One of two discs in one place has all: the larger one, or else the first.
+        // If two discs have the same centre, the larger disc gets the whole cell, or the first of two equal discs.
         let has_none = (other.radius, first) > (site.radius, second);
         let offset = if has_none { f64::NEG_INFINITY } else { f64::INFINITY };
         return HalfPlane { offset, direction: DVec2::X };
@@ -140,8 +142,7 @@ fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     HalfPlane { offset: 0.5 * (distance + powers / distance), direction: branch / distance }
 }
 
-/// The sites whose cells may border on that of each of the first `grains`: what two cells can reach overlaps where they
-/// do.
+/// For each of the first `grains` sites, the sites whose cells may border on its cell: their reaches overlap.
 fn neighbours(sites: &[Site], grains: usize) -> Vec<Vec<usize>> {
     let mut neighbours = vec![Vec::new(); grains];
     let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();
@@ -177,11 +178,11 @@ impl GrainBox {
         if size.y < 0.0 { f64::NAN } else { area }
     }
 
-    /// Its sides, seen from a point inside.
+    /// The sides of the box, relative to a point inside.
     fn cuts(&self, centre: DVec2) -> [HalfPlane; 4] {
         let (mut above, mut below) = (self.high - centre, centre - self.low);
         let [width, height] = self.periodic.unwrap_or_default().periods();
-        // Farther than any cell reaches.
+        // Beyond the reach of any cell.
         if let Some(width) = width {
             (above.x, below.x) = (2.0 * width, 2.0 * width);
         }
@@ -197,12 +198,13 @@ impl GrainBox {
     }
 }
 
-/// What a straight line leaves of a cell: the points p with (p − x)·direction ≤ offset, x the centre of the cell's disc.
+/// A half-plane that cuts a cell: the points p with (p − x)·direction ≤ offset, where x is the centre of the cell's
+/// disc.
 #[derive(Clone, Copy, Debug)]
 struct HalfPlane {
-    /// m; negative where the centre is beyond the line.
+    /// m; negative if the centre is beyond the line.
     offset: f64,
-    /// Of length 1.
+    /// Unit vector.
     direction: DVec2,
 }
 
@@ -211,11 +213,11 @@ struct HalfPlane {
 struct Site {
     position: DVec2,
     radius: f64,
-    /// Radius of the part of the plane that can be its cell, m.
+    /// Radius of the region that can belong to its cell, m.
     reach: f64,
 }
 
-/// Adds to sites those images of theirs whose cells may border on one in the cell of the borders.
+/// Adds those images of the sites whose cells may border on a cell of an original site.
 fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     let Some(periodic) = periodic else { return };
     let reach = 2.0 * sites.iter().map(|site| site.reach).fold(0.0, f64::max);
@@ -235,27 +237,27 @@ fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     sites.extend(images);
 }
 
-/// A site, and where borders are periodic its images a period to each side: what the walls are to each of them, they
-/// and their images are to the site.
+/// A site and, with periodic borders, its images one period to each side. Testing them against the walls is equivalent
+/// to testing the site against the walls and their images.
 fn with_images(site: &Site, periodic: Option<Periodic>) -> impl Iterator<Item = Site> {
     let site = *site;
     let around = periodic.unwrap_or_default().around();
     around.map(move |by| Site { position: site.position + by, ..site })
 }
 
-/// Where a grain stands to a side.
+/// Position of a grain relative to a side.
 enum Stands {
-    /// Before it: the cut along its line.
+    /// In front of the side: the cut along its line.
     Before(HalfPlane),
-    /// Beside it: the way to the nearer end, m.
+    /// Beyond an end of the side: the vector to the nearer end, m.
     Beside(DVec2),
 }
 
-/// Adds the cuts by the sides of each boundary that can matter to a site's cell.
+/// Adds the cuts by the sides of all boundaries that can affect a site's cell.
 fn cut_by_walls(boundaries: &[Vec<Edge>], site: &Site, cuts: &mut Vec<HalfPlane>) {
     for edges in boundaries {
         let mut before = false;
-        // The shortest way to a corner, m.
+        // The shortest vector to a corner, m.
         let mut corner: Option<DVec2> = None;
         for edge in edges {
             match stands(site.position, edge) {
@@ -289,7 +291,7 @@ fn stands(centre: DVec2, edge: &Edge) -> Stands {
             let along = to - from;
             let part = (centre - from).dot(along) / along.length_squared();
             if part > 0.0 && part < 1.0 {
-                // On the line itself either side would do.
+                // For a centre on the line itself, either direction would do.
                 let way = from + part * along - centre;
                 let direction = way.normalize_or(-along.perp().normalize_or_zero());
                 Stands::Before(HalfPlane { offset: way.length(), direction })
@@ -300,7 +302,8 @@ fn stands(centre: DVec2, edge: &Edge) -> Stands {
     }
 }
 
-/// A cell while it is cut: its corners in order, anticlockwise, relative to the centre of its disc. All memory is kept from cell to cell.
+/// A cell during its construction: its corners, anticlockwise, relative to the centre of its disc. Its memory is reused
+/// for the next cell.
 #[derive(Default)]
 struct CellPolygon {
     corners: Vec<DVec2>,
@@ -308,14 +311,14 @@ struct CellPolygon {
 }
 
 impl CellPolygon {
-    /// Makes it what the cuts leave of a square around all that is within `reach` (m) of the centre.
+    /// Sets the cell to a square around everything within `reach` (m) of the centre, reduced by the cuts.
     fn fill(&mut self, reach: f64, cuts: &mut [HalfPlane]) {
         self.corners.clear();
         let signs = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
         self.corners.extend(signs.map(|sign| reach * sign));
         cuts.sort_unstable_by(|a, b| a.offset.total_cmp(&b.offset));
         for &cut in cuts.iter() {
-            // Those that follow are no nearer.
+            // All later cuts are at least as far away.
             if cut.offset > 0.0 && cut.offset * cut.offset >= self.farthest_squared() {
                 break;
             }
@@ -323,7 +326,7 @@ impl CellPolygon {
         }
     }
 
-    /// Leaves what is on this side of the cuts.
+    /// Keeps the part that satisfies the cuts.
     fn clip<const COUNT: usize>(&mut self, cuts: [HalfPlane; COUNT]) {
         for HalfPlane { offset, direction } in cuts {
             if offset < 0.0 && offset * offset >= self.farthest_squared() {
@@ -335,18 +338,18 @@ impl CellPolygon {
         }
     }
 
-    /// True if it is a cell of which all corners are nearer to the centre than `reach`, m.
+    /// True if the cell exists and all its corners are nearer to the centre than `reach`, m.
     fn is_closed(&self, reach: f64) -> bool {
         !self.corners.is_empty() && self.farthest_squared() < (1.0 - CLOSED_WITHIN) * reach * reach
     }
 
-    /// Squared distance of its farthest corner, m²; 0 where nothing is left of it.
+    /// Squared distance of its farthest corner, m²; 0 if the cell is empty.
     fn farthest_squared(&self) -> f64 {
         self.corners.iter().map(|corner| corner.length_squared()).fold(0.0, f64::max)
     }
 
-    /// Area of what lies within `radius` (m) of the centre: each side spans a triangle with the centre, of which the
-    /// circle leaves a triangle and a sector at either end.
+    /// Area within `radius` (m) of the centre. Each side spans a triangle with the centre, which the circle reduces to
+    /// a triangle with a sector at either end.
     fn area_within(&self, radius: f64) -> f64 {
         let nexts = self.corners.iter().cycle().skip(1);
         let sides = self.corners.iter().zip(nexts);
@@ -354,7 +357,7 @@ impl CellPolygon {
     }
 }
 
-/// Signed area of what a circle about the origin leaves of the triangle between the origin and a side.
+/// Signed area of the part of the triangle between the origin and a side that lies inside a circle about the origin.
 fn area_below(from: DVec2, to: DVec2, radius: f64) -> f64 {
     let inside = radius * radius;
     if from.length_squared() <= inside && to.length_squared() <= inside {

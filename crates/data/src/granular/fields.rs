@@ -4,16 +4,16 @@
 //! > ρ = Σ m φ(r − r_i),  p = Σ m v φ(r − r_i),  V = p/ρ,
 //! > σ_k = Σ m v′ ⊗ v′ φ(r − r_i) with v′ = v − V(r),  σ_c = Σ f ⊗ ℓ ∫₀¹ φ(r − r_i + s ℓ) ds,
 //!
-//! compression positive as everywhere here: f is the force on grain i, and ℓ leads to its centre from that of grain j, or from
-//! the touched point of a body that no grain moves.
+//! Compression is positive, as everywhere in Slump. f is the force on grain i, and ℓ leads to its centre from that of
+//! grain j, or from the touched point of a wall or fixed disc.
 //!
-//! **φ** is the product of a cubic B-spline in x and one in y. It has twice continuous derivatives, ends at 2√3 widths, and its
-//! standard deviation along each axis is the width. **A value is the mean over a cell**, to which each grain contributes the
-//! integral of φ. So the sums over all cells are exact: of mass and momentum, and of σ_c the sum Σ f ⊗ ℓ. The integral over s
-//! is a Gauss quadrature, whose points have weights that add up to 1.
+//! **φ** is the product of a cubic B-spline in x and one in y. It has continuous second derivatives and ends at 2√3
+//! widths, and its standard deviation along each axis is the width. **A value is the mean over a cell**, to which each
+//! grain contributes the integral of φ. The sums over all cells are therefore exact: of mass, of momentum, and of σ_c,
+//! whose sum is Σ f ⊗ ℓ. The integral over s is a Gauss quadrature, whose weights add up to 1.
 //!
-//! **Borders that wrap** take what is smeared across them to the other side. Where they shear, it has the velocity there of a
-//! grain that crosses.
+//! **Periodic borders** move the part that is smeared across them to the other side. If the borders shear, that part
+//! has the velocity that a grain has after crossing.
 
 use glam::{DMat2, DVec2};
 
@@ -22,23 +22,23 @@ use crate::error::{Error, Result};
 use crate::sim::{GrainState, Moment};
 use crate::world::Periodic;
 
-/// Cells in a width: what is smooth over a width is resolved.
+/// Cells per width; with two, a field that is smooth over a width is resolved.
 const CELLS_IN_WIDTH: f64 = 2.0;
-/// More cells take more memory than a field is worth.
+/// Largest number of cells. More cells would take more memory than a field is worth.
 const MOST_CELLS: f64 = 4e6;
-/// Gauss' quadrature on 0 … 1, exact up to the fifth degree: places, and weights.
+/// Gauss quadrature on 0 … 1, exact up to the fifth degree: points and weights.
 const QUADRATURE: [(f64, f64); 3] = [
     (0.112_701_665_379_258_3, 5.0 / 18.0),
     (0.5, 4.0 / 9.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Smoothed fields of a moment: means over the cells of a grid. Row after row from below, each from the left.
+/// Smoothed fields of a moment: means over the cells of a grid, row by row from below, each row from the left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fields {
     /// The standard deviation of the smoothing along each axis, m.
     pub width: f64,
-    /// Corner of the cell with the index 0, m: the origin, or the borders of what wraps.
+    /// Corner of the cell with the index 0, m: the origin, or the lower periodic borders.
     pub origin: DVec2,
     /// Sides of a cell, m.
     pub cell: DVec2,
@@ -67,8 +67,8 @@ impl Fields {
         Self::in_box(moment, width, [DVec2::MIN, DVec2::MAX])
     }
 
-    /// Fields of the grains in a box, from its lower left to its upper right corner, m, and a smoothing width around it.
-    /// The rest is left out.
+    /// Fields of the grains in a box, from its lower left to its upper right corner, m, with a smoothing width around
+    /// it. Other grains are left out.
     ///
     /// # Errors
     /// As [`Fields::of`].
@@ -89,7 +89,7 @@ impl Fields {
         let centres = network.grains().map(|(_, grain)| grain.position);
         let touched = network.links.iter();
         let touched = touched.map(|link| network.grains[link.grain].position - link.branch());
-        // Borders that wrap have everything between them.
+        // Along a periodic axis, all grains are inside.
         let is_in = |at: &DVec2| {
             (periodic.x.is_some() || (least.x..=most.x).contains(&at.x))
                 && (periodic.y.is_some() || (least.y..=most.y).contains(&at.y))
@@ -119,7 +119,7 @@ impl Fields {
         Ok(fields)
     }
 
-    /// True if fields of all of a box have no more cells than there may be.
+    /// True if the fields of a whole box do not exceed the largest number of cells.
     pub fn are_few(periodic: Option<Periodic>, corners: [DVec2; 2], width: f64) -> bool {
         let axes = axes_over(periodic.unwrap_or_default(), corners, width);
         axes.iter().map(|axis| axis.cells).product::<f64>() <= MOST_CELLS
@@ -144,7 +144,7 @@ impl Fields {
             .collect();
         for (_, grain) in network.grains() {
             smoothing.share(grain.position, |cell, share, above| {
-                // Where the share is rounded away there is no velocity.
+                // If the weight is rounded to zero, there is no velocity.
                 if share > 0.0 {
                     let own = seen(grain.velocity, above) - velocity[cell];
                     kinetic_stress[cell] += outer(per_area * share * grain.mass * own, own);
@@ -179,7 +179,7 @@ impl Fields {
     }
 }
 
-/// The corners of the smallest box around places; both at the origin if there are none.
+/// The corners of the smallest box around points; both at the origin without points.
 pub(crate) fn box_of(places: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
     let wider = |[low, high]: [DVec2; 2], [other, one]: [DVec2; 2]| [low.min(other), high.max(one)];
     places.map(|at| [at, at]).reduce(wider).unwrap_or([DVec2::ZERO; 2])
@@ -207,7 +207,7 @@ struct GridAxis {
 }
 
 impl GridAxis {
-    /// All cells that what lies between two places is smeared over, or all between borders that wrap.
+    /// All cells over which points in an interval are smeared, or all cells between periodic borders.
     fn of(borders: Option<[f64; 2]>, [from, to]: [f64; 2], width: f64) -> Self {
         let side = width / CELLS_IN_WIDTH;
         if let Some([low, high]) = borders {
@@ -220,8 +220,8 @@ impl GridAxis {
         Self { wraps: false, origin: 0.0, side, first: first as i64, cells }
     }
 
-    /// Shares of the cells in what is smeared around a place: cell, share, and by how many periods the cell lies beyond the
-    /// upper border. They add up to 1, unless some of it lies outside of the grid.
+    /// Weights of the cells around a smeared point: cell, weight, and the number of periods by which the cell lies
+    /// beyond the upper border. The weights add up to 1, unless a part lies outside the grid.
     fn shares(&self, place: f64, width: f64) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         let knots = knots(width);
         let at = move |cell: f64| self.origin + cell * self.side;
@@ -247,12 +247,12 @@ impl GridAxis {
     }
 }
 
-/// Distance of the knots of a cubic B-spline with that standard deviation.
+/// Distance of the knots of a cubic B-spline with standard deviation `width`.
 fn knots(width: f64) -> f64 {
     3f64.sqrt() * width
 }
 
-/// The integral of the cubic B-spline up to a place, in knots from its middle.
+/// The integral of the cubic B-spline up to a point, in knots from its centre.
 fn spline_below(place: f64) -> f64 {
     let t = place.abs();
     let above_middle = if t < 1.0 {
@@ -270,7 +270,7 @@ struct Smoothing {
 }
 
 impl Smoothing {
-    /// Gives `to` the cells that a place is smeared over: number, share, and how many cells above this one it reached.
+    /// Calls `to` for the cells over which a point is smeared: cell, weight, and the number of periods above this one.
     fn share(&self, place: DVec2, mut to: impl FnMut(usize, f64, f64)) {
         let [along_x, along_y] = &self.axes;
         let in_row = |above: f64| {

@@ -1,4 +1,4 @@
-//! How forces, directions, contacts and overlaps are distributed.
+//! Histograms of forces, directions, contacts and overlaps.
 //!
 //! The bins are the same for all piles and moments, so that counts add up over frames and runs.
 
@@ -6,44 +6,44 @@ use super::MomentParts;
 use super::stress::axis_degrees;
 use crate::sim::Moment;
 
-/// Bins of directions: as wide as this, degrees, and the first about 0, so that the directions of square and
-/// triangular packings lie in the middle of theirs.
+/// Width of the bins of directions, degrees. The first bin is centred at 0, so that the directions of square and
+/// triangular packings are in the centres of their bins.
 const DEGREES: f64 = 5.0;
-/// Bins of f in the mean force.
+/// Bins of f per mean force.
 const FORCE_BINS_IN_ONE: i32 = 5;
-/// The bins of f reach from so many mean forces that pull …
+/// The bins of f reach from this many mean forces in tension …
 const FORCES_PULLING: i32 = 4;
-/// … to so many that push.
+/// … to this many in compression.
 const FORCES_PUSHING: i32 = 8;
-/// The last bin of contacts a grain has so many and more. Equal discs have 6 at most.
+/// The last bin of contacts per grain includes all larger numbers. Equal discs have 6 at most.
 const CONTACTS: u32 = 12;
-/// Edges of overlaps in mean diameters: 0, and three a decade.
+/// Edges of overlaps in mean diameters: 0, and three per decade.
 const OVERLAPS: [f64; 20] = [
     0.0, 1e-7, 2e-7, 5e-7, 1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3,
     1e-2, 2e-2, 5e-2, 1e-1,
 ];
 
-/// How often each range of a quantity occurs.
+/// Number of occurrences of each range of a quantity.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Histogram {
-    /// What is counted, a word.
+    /// The quantity, a word.
     pub quantity: &'static str,
-    /// Unit of the edges; 1 where they have none.
+    /// Unit of the edges; 1 if they are dimensionless.
     pub unit: &'static str,
-    /// Bin k reaches from `edges[k]`, which belongs to it, to `edges[k + 1]`. The outermost may be infinite.
+    /// Bin k reaches from `edges[k]`, which belongs to it, to `edges[k + 1]`. The first and last edges may be infinite.
     pub edges: Vec<f64>,
-    /// What lies in each bin.
+    /// Number of values in each bin.
     pub counts: Vec<u64>,
 }
 
-/// The histograms of a pile, each once:
+/// The histograms of a pile:
 ///
-/// * `normal_force`: f = N/⟨|N|⟩ of the contacts that bear a force, in bins of 0.2 from −4 to 8, and what lies beyond.
-/// * `contact_orientation`: directions of normals, degrees from the x axis anticlockwise, of all contacts, in bins of 5
-///   from −2.5 to 177.5: an axis has no ends, and what lies above 177.5 counts as below 2.5.
-/// * `coordination`: contacts of a grain, in bins of one, the last without end.
-/// * `overlap`: overlaps of contacts in mean diameters, those with a gap below 0; then from 0 to 1e-7, and three bins a
-///   decade (1, 2, 5) to 0.1 and beyond.
+/// * `normal_force`: f = N/⟨|N|⟩ of the contacts that bear a force, in bins of 0.2 from −4 to 8, and two bins beyond.
+/// * `contact_orientation`: directions of the normals of all contacts, degrees anticlockwise from the x axis, in bins
+///   of 5 from −2.5 to 177.5. A normal is an axis without direction, so values above 177.5 count as below 2.5.
+/// * `coordination`: contacts per grain, in bins of one; the last bin is unbounded.
+/// * `overlap`: overlaps of contacts in mean diameters: one bin for contacts with a gap, below 0; then from 0 to 1e-7,
+///   and three bins per decade (1, 2, 5) to 0.1 and beyond.
 pub fn histograms(moment: &Moment) -> Vec<Histogram> {
     of_parts(&MomentParts::of(moment), moment)
 }
@@ -78,7 +78,7 @@ impl Histogram {
     ) -> Self {
         let mut counts = vec![0; edges.len() - 1];
         for value in values {
-            // The number of edges that are not above it; a value that is none is in no bin.
+            // The number of edges that are not above the value; NaN is in no bin.
             let edges_below = edges.partition_point(|&edge| edge <= value);
             if let Some(count) = edges_below.checked_sub(1).and_then(|bin| counts.get_mut(bin)) {
                 *count += 1;

@@ -1,4 +1,4 @@
-//! The mean flow about each grain, and what grains have beside it.
+//! The mean flow around each grain, and the kinetic energy relative to it.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -6,17 +6,18 @@ use super::network::Network;
 use crate::contact::Grid;
 use crate::sim::{GrainState, Surroundings};
 
-/// How far grains tell of the mean flow, in mean diameters. Larger: a flow that bends counts as fluctuation; smaller: too
-/// few tell.
+/// Radius of the neighbourhood that determines the mean flow, in mean diameters. If it is larger, a curved flow counts
+/// as fluctuation. If it is smaller, too few grains contribute.
 const REACH_IN_DIAMETERS: f64 = 3.0;
-/// Fewer grains tell too little of a flow, since a linear one has three numbers for each component.
+/// Least number of grains for a fit. A linear flow has three parameters per component, so fewer grains determine it
+/// badly.
 const LEAST: f64 = 7.0;
 
-/// ½ Σ m |v − v̄|², v̄ the local mean flow, J.
+/// ½ Σ m |v − v̄|², where v̄ is the local mean flow, J.
 ///
-/// v̄ is linear in place, so that a shear has no part in the rest, and is fitted by least squares to grains of the
-/// neighbourhood, all with the same weight. Of n velocities without correlation the fit takes 3/n of their variance away,
-/// which n/(n − 3) puts back.
+/// v̄ is linear in position, so a uniform shear does not contribute to the fluctuation. It is fitted by least squares
+/// to the grains of the neighbourhood, all with the same weight. For n uncorrelated velocities the fit removes 3/n of
+/// their variance; the factor n/(n − 3) restores it.
 pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) -> f64 {
     let reach = REACH_IN_DIAMETERS * surroundings.mean_diameter;
     let mass: f64 = network.grains().map(|(_, grain)| grain.mass).sum();
@@ -42,11 +43,11 @@ pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) ->
     let of_grain =
         |((_, grain), FlowSums { matrix, velocities }): ((usize, &GrainState), FlowSums)| {
             let count = matrix.x_axis.x;
-            // Grains in a row tell nothing of a flow across it.
+            // Grains in a straight line do not determine the flow across it.
             let fitted = count >= LEAST && matrix.determinant() > 1e-6 * count.powi(3);
             let (peculiar, part) = if fitted {
                 let inverse = matrix.inverse();
-                // At the grain itself, and less its own velocity.
+                // The mean flow at the grain, relative to its own velocity.
                 let mean = velocities.map(|sum| (inverse * sum).x);
                 (DVec2::from(mean), count / (count - 3.0))
             } else {
@@ -60,14 +61,14 @@ pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) ->
 /// Sums over the neighbourhood of a grain, for the fit of a linear flow.
 #[derive(Clone, Copy)]
 struct FlowSums {
-    /// Σ (1, x, y) ⊗ (1, x, y), (x, y) from the grain, in reaches.
+    /// Σ (1, x, y) ⊗ (1, x, y), with (x, y) relative to the grain, in units of the reach.
     matrix: DMat3,
-    /// Σ (1, x, y) v for each component, v less that of the grain, m/s.
+    /// Σ (1, x, y) v for each component, with v relative to the grain's velocity, m/s.
     velocities: [DVec3; 2],
 }
 
 impl FlowSums {
-    /// Of the grain itself.
+    /// Sums with the grain itself only.
     fn of_one() -> Self {
         let mut sums = Self { matrix: DMat3::ZERO, velocities: [DVec3::ZERO; 2] };
         sums.add(DVec2::ZERO, DVec2::ZERO);
@@ -84,7 +85,7 @@ impl FlowSums {
     }
 }
 
-/// Places and velocities of the grains, then of their images within reach of the cell.
+/// Positions and velocities of the grains, followed by those of their images within reach of the cell.
 fn with_images(network: &Network, surroundings: &Surroundings, reach: f64) -> Vec<(DVec2, DVec2)> {
     let grains = || network.grains().map(|(_, grain)| (grain.position, grain.velocity));
     let Some(cell) = surroundings.periodic else { return grains().collect() };

@@ -1,4 +1,4 @@
-//! What a pile is around each of its grains, and as a whole.
+//! Measures of a pile around each of its grains, and as a whole.
 
 use super::MomentParts;
 use super::mean_flow::peculiar_energy;
@@ -6,7 +6,8 @@ use super::stress::{self, Tensor};
 use crate::column_spec::{CellValue, ColumnSpec};
 use crate::sim::{ContactStatus, Moment};
 
-/// Declares a kind of row once: a structure, and a [`ColumnSpec`] for each field, whose unit follows its type.
+/// Declares a kind of row: a structure, and a [`ColumnSpec`] for each field. The doc comment of a field is also its
+/// description in tables; its unit follows its type.
 macro_rules! columns {
     (@value f64 $field:ident) => {
         CellValue::SomeNumber(|row| (!row.$field.is_nan()).then_some(row.$field))
@@ -47,7 +48,8 @@ macro_rules! columns {
 }
 
 columns! {
-    /// The pile around one grain at one moment. A lost grain has no contacts, and its other numbers are NaN.
+    /// Measures of the pile around one grain at one moment. A lost grain has no contacts, and its other numbers are
+    /// NaN.
     pub struct GrainMeasures {
         /// Contacts with grains and with what does not move.
         coordination: u32, "1";
@@ -74,7 +76,7 @@ columns! {
 }
 
 impl GrainMeasures {
-    /// Measures each grain of a pile, in their order.
+    /// Measures each grain of a pile, in the order of the grains.
     pub fn of_each(moment: &Moment) -> Vec<Self> {
         Self::of_parts(&MomentParts::of(moment))
     }
@@ -84,7 +86,7 @@ impl GrainMeasures {
         let sums = stress::stress_of_grains(network);
         let of_grain = |(index, sum): (usize, Tensor)| {
             let cell_area = cells.areas[index];
-            // A disc within a larger one may have no cell at all.
+            // A disc inside a larger one may have no cell at all.
             let stress = sum.over(if cell_area > 0.0 { cell_area } else { f64::NAN });
             Self {
                 coordination: coordination.of_grains[index],
@@ -104,8 +106,8 @@ impl GrainMeasures {
 }
 
 columns! {
-    /// The whole pile at one moment. A number that does not exist is NaN: a mean over nothing, a direction where
-    /// all directions are alike.
+    /// Measures of the whole pile at one moment. An undefined number is NaN, such as a mean over nothing, or a
+    /// direction if all directions are alike.
     pub struct PileMeasures {
         /// Grains that count: all that are not lost.
         grains: u32, "1";
@@ -182,7 +184,7 @@ columns! {
 }
 
 impl PileMeasures {
-    /// Measures a pile. What is asked for of its grains besides is cheaper from [`measure`](super::measure).
+    /// Measures a pile. If the measures of its grains are also needed, [`measure`](super::measure) is cheaper.
     pub fn of(moment: &Moment) -> Self {
         Self::of_parts(&MomentParts::of(moment))
     }

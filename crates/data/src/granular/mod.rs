@@ -1,5 +1,5 @@
-//! The quantities that granular physics is written in, of a [`Moment`]: stress, fabric, coordination, solid fraction,
-//! forces, clusters.
+//! The usual quantities of granular physics for a [`Moment`]: stress, fabric, coordination, solid fraction, forces,
+//! clusters.
 //!
 //! ```
 //! let mut simulation = slump_core::scene::built_in("pile")?.simulation()?;
@@ -9,10 +9,10 @@
 //! # Ok::<(), slump_core::error::Error>(())
 //! ```
 //!
-//! Lengths are in m and forces in N, so that stresses, which are forces a length in a plane, are in N/m. Compression is
-//! positive, directions are in degrees from the x axis anticlockwise, and a number that does not exist is NaN. Grains
-//! that are lost count nowhere, nor do their contacts. Contacts have the forces, normals and gaps of the moment's last
-//! step, while grains are where that step has brought them.
+//! Lengths are in m and forces in N. Stresses in a plane are forces per length, in N/m. Compression is positive,
+//! directions are in degrees anticlockwise from the x axis, and an undefined number is NaN. Lost grains and their
+//! contacts do not count. Contacts have the forces, normals and gaps of the moment's last step, while grains have the
+//! positions after that step.
 
 mod cells;
 mod fields;
@@ -32,18 +32,18 @@ use self::cells::PowerCells;
 use self::network::{Clusters, Coordination, ForceDistribution, Network};
 use crate::sim::{Moment, Surroundings};
 
-/// All that is measured of a moment.
+/// All measures of a moment.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct MomentMeasures {
     /// The whole pile.
     pub pile: PileMeasures,
-    /// Each grain, in their order.
+    /// Each grain, in the order of the grains.
     pub grains: Vec<GrainMeasures>,
     /// See [`histograms()`].
     pub histograms: Vec<Histogram>,
 }
 
-/// Measures all at once, which takes less than one after the other.
+/// Computes all measures together, which is faster than one by one.
 pub fn measure(moment: &Moment) -> MomentMeasures {
     let parts = MomentParts::of(moment);
     MomentMeasures {
@@ -53,7 +53,7 @@ pub fn measure(moment: &Moment) -> MomentMeasures {
     }
 }
 
-/// What several measures are made of, found once.
+/// Intermediate results that several measures use.
 struct MomentParts<'a> {
     network: Network<'a>,
     cells: PowerCells,

@@ -1,33 +1,33 @@
-//! What of a moment counts: the grains that are not lost and their contacts, and what this network says by itself:
-//! contacts of a grain, clusters, and how normal forces are distributed.
+//! The network of the grains that count (all that are not lost) and their contacts, and quantities of the network
+//! itself: contacts per grain, clusters, and the distribution of normal forces.
 
 use ena::unify::{InPlaceUnificationTable, UnifyKey};
 use glam::DVec2;
 
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 
-/// A contact bears a force where that is more than so much of the mean force of all contacts. Smaller: what a solver
-/// leaves undone holds grains that nothing holds; larger: weak contacts do not count.
+/// A contact bears a force if it exceeds this fraction of the mean force of all contacts. If the fraction is smaller,
+/// residual errors of the solver appear as support. If it is larger, weak contacts do not count.
 const BEARS_FROM: f64 = 1e-6;
 
-/// Grains and contacts that count.
+/// The grains and contacts that count.
 pub(super) struct Network<'a> {
     pub grains: &'a [GrainState],
-    /// True if a grain counts. No index of a link is one of those that do not.
+    /// True if a grain counts. Links only contain indices of grains that count.
     pub counts: Vec<bool>,
     pub links: Vec<NetworkContact>,
 }
 
-/// A contact that counts. Vectors in m and N.
+/// A contact that counts. Vectors are in m and N.
 pub(super) struct NetworkContact {
     pub grain: usize,
-    /// Grain j, unless i touches a body that no grain moves.
+    /// Grain j; `None` if i touches a wall or fixed disc.
     pub other: Option<usize>,
     pub normal: DVec2,
     pub gap: f64,
-    /// From the contact point to the centre of i: half of the gap is its own where j is a grain, else all of it.
+    /// From the contact point to the centre of i. If j is a grain, it includes half of the gap, else all of it.
     pub own_branch: DVec2,
-    /// From the centre of grain j to the contact point, or none.
+    /// From the centre of grain j to the contact point; zero if j is not a grain.
     pub other_branch: DVec2,
     pub force: DVec2,
     pub normal_force: f64,
@@ -36,7 +36,7 @@ pub(super) struct NetworkContact {
 }
 
 impl NetworkContact {
-    /// ℓ: to the centre of i from that of grain j, or from the touched point of another body.
+    /// The branch vector ℓ: to the centre of i from that of grain j, or from the touched point of another body.
     pub(super) fn branch(&self) -> DVec2 {
         self.own_branch + self.other_branch
     }
@@ -83,7 +83,7 @@ impl<'a> Network<'a> {
         self.grains().count()
     }
 
-    /// Part of the contacts of which something is true; NaN without contacts.
+    /// Fraction of the contacts that satisfy a condition; NaN without contacts.
     pub(super) fn share(&self, is_so: impl Fn(&NetworkContact) -> bool) -> f64 {
         let count = self.links.iter().filter(|&link| is_so(link)).count();
         count as f64 / self.links.len() as f64
@@ -112,21 +112,22 @@ fn link(contact: &ContactState, radius: f64) -> NetworkContact {
     }
 }
 
-/// Contacts of a grain that hold it, at least.
+/// Least number of contacts that support a grain.
 const HELD_BY: u32 = 2;
 
-/// Contacts of a grain, and the grains that carry nothing on.
+/// Contacts per grain, and the rattlers, which do not transmit forces.
 ///
-/// A rattler has fewer than two contacts that bear a force. What leans on rattlers alone is not held either, so they
-/// are taken away with their contacts until none is left: what remains is the 2-core of the network of forces, in which
-/// a body that no grain moves holds like any other. Under gravity this takes dead ends too, such as a single column.
+/// A rattler has fewer than two contacts that bear a force. Grains that only rest on rattlers are not supported either.
+/// Rattlers and their contacts are therefore removed until there are no more. The rest is the 2-core of the force
+/// network, in which walls and fixed discs support like any other body. Under gravity this also removes dead ends, such
+/// as a single column.
 pub(super) struct Coordination {
-    /// Contacts of each grain; of one that does not count, none.
+    /// Contacts of each grain; 0 for a grain that does not count.
     pub of_grains: Vec<u32>,
     pub rattlers: Vec<bool>,
-    /// Contacts of a grain, the mean.
+    /// Mean number of contacts per grain.
     pub mean: f64,
-    /// The same without rattlers, of contacts that bear a force.
+    /// Mean number of force-bearing contacts per grain, without rattlers.
     pub mean_without_rattlers: f64,
 }
 
@@ -152,7 +153,7 @@ impl Coordination {
     }
 }
 
-/// Which grains are rattlers, and the contacts that are left to each of the others.
+/// True for each rattler, and the number of contacts that the other grains keep.
 fn rattlers(network: &Network) -> (Vec<bool>, Vec<u32>) {
     let mut left = vec![0; network.grains.len()];
     let mut neighbours = vec![Vec::new(); network.grains.len()];
@@ -185,7 +186,7 @@ fn rattlers(network: &Network) -> (Vec<bool>, Vec<u32>) {
     (rattlers, left)
 }
 
-/// A grain in the table of sets.
+/// A grain as a member of a union-find set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Member(u32);
 
@@ -205,11 +206,11 @@ impl UnifyKey for Member {
     }
 }
 
-/// Sets of grains that contacts join, and how large they are. What no grain moves joins none: piles on one floor are no
-/// one set.
+/// Clusters: sets of grains joined by contacts, with their sizes. Walls and fixed discs do not join grains, so piles on
+/// one floor are separate clusters.
 pub(super) struct Clusters {
     pub count: u32,
-    /// Grains of the largest.
+    /// Number of grains of the largest cluster.
     pub largest: u32,
 }
 
@@ -233,9 +234,10 @@ impl Clusters {
     }
 }
 
-/// How normal forces are distributed about their mean: P(f), f = N/⟨|N|⟩, over the contacts that bear a force.
+/// Distribution of normal forces about their mean: P(f), f = N/⟨|N|⟩, over the contacts that bear a force.
 ///
-/// The mean is of |N|, since with cohesion the pulls may be as large as the pushes. Without cohesion it is the usual one.
+/// The mean is that of |N|, because with cohesion the tensile forces may be as large as the compressive ones. Without
+/// cohesion it is the usual mean.
 pub(super) struct ForceDistribution {
     /// ⟨|N|⟩, N.
     pub mean: f64,
@@ -261,7 +263,7 @@ impl ForceDistribution {
         self.over_mean.iter().map(|force| force.abs()).fold(f64::NAN, f64::max)
     }
 
-    /// Part of the forces with |f| > 1; NaN without forces.
+    /// Fraction of the forces with |f| > 1; NaN without forces.
     pub(super) fn strong_share(&self) -> f64 {
         mean(&self.over_mean, |force| f64::from(force.abs() > 1.0))
     }

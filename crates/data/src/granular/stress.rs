@@ -1,10 +1,10 @@
-//! Stresses by Love and Weber, compression positive, the fabric of contacts, and what tensors of the plane say.
+//! Stresses by Love and Weber, compression positive, the fabric of contacts, and invariants of plane tensors.
 //!
-//! A body under the forces f_c at the points p_c has the mean stress (1/A) Σ f_c ⊗ p_c where the forces balance. Summed
-//! over grains about their centres, each contact gives f ⊗ ℓ: ℓ joins the two centres, or a centre and the point
-//! touched of a wall or a fixed disc, so that what the surroundings bear is not counted. With f on grain i and ℓ
-//! towards its centre, pushes are positive. Weight and inertia have no part in it: their mean is the stress that
-//! balances them. In a plane σ is a force a length.
+//! If the forces f_c at the points p_c on a body balance, its mean stress is (1/A) Σ f_c ⊗ p_c. Summed over grains
+//! about their centres, each contact contributes f ⊗ ℓ. The branch ℓ joins the two centres, or a centre and the touched
+//! point of a wall or a fixed disc, so the stress in walls is not included. f acts on grain i and ℓ points towards its
+//! centre, so compressive forces are positive. Weight and inertia are not part of it: their mean is the stress that
+//! balances them. In a plane σ is a force per length.
 
 use glam::DVec2;
 
@@ -19,7 +19,7 @@ pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     sum
 }
 
-/// The part of each grain in the same sum, J.
+/// The contribution of each grain to this sum, J.
 pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     let mut sums = vec![Tensor::default(); network.grains.len()];
     for link in &network.links {
@@ -57,7 +57,7 @@ impl Tensor {
         self.yy += a.y * b.y;
     }
 
-    /// In so many parts.
+    /// Divides by a number.
     pub(super) fn over(self, divisor: f64) -> Self {
         let Self { xx, xy, yx, yy } = self;
         Self { xx: xx / divisor, xy: xy / divisor, yx: yx / divisor, yy: yy / divisor }
@@ -73,8 +73,8 @@ impl Tensor {
         self.half_differences().length()
     }
 
-    /// Direction of the larger principal value of the symmetric part, degrees from the x axis, in [0, 180); NaN where
-    /// there is none.
+    /// Direction of the larger principal value of the symmetric part, degrees from the x axis, in [0, 180); NaN if it
+    /// is undefined.
     pub(super) fn direction(self) -> f64 {
         let differences = self.half_differences();
         if differences.length() > 0.0 {
@@ -84,13 +84,13 @@ impl Tensor {
         }
     }
 
-    /// (a, b) of the symmetric part less its mean, (a b; b −a).
+    /// (a, b) of the deviator (a b; b −a), the symmetric part minus its mean.
     fn half_differences(self) -> DVec2 {
         0.5 * DVec2::new(self.xx - self.yy, self.xy + self.yx)
     }
 }
 
-/// The direction of an axis without ends in [0, 180) degrees, of an angle in rad.
+/// The direction of an axis, degrees in [0, 180), from an angle in rad.
 pub(super) fn axis_degrees(angle: f64) -> f64 {
     let degrees = angle.to_degrees().rem_euclid(180.0);
     // A tiny negative angle is 180 after rounding.

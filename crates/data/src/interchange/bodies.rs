@@ -1,5 +1,5 @@
-//! The bodies behind a problem's W and q: checked and made into a step's problem, for methods that work on bodies, and
-//! taken from a simulation.
+//! The bodies behind a problem's W and q, for solvers that work on bodies: taken from a simulation, checked, and
+//! converted to a step's problem.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -15,12 +15,11 @@ use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
-/// Two forms of one problem may differ by this part: rounding, with room for a file whose numbers
-/// were cut to ten digits.
+/// Largest relative difference between two forms of a problem. It covers rounding, and files whose numbers were cut to
+/// ten digits.
 pub(super) const DISAGREEMENT: f64 = 1e-9;
 
-/// Discs and their contacts: what W, q and c₀ were made of. Lists have an entry a body or an entry a
-/// contact.
+/// Discs and their contacts, from which W, q and c₀ were computed. Each list has one entry per body or one per contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForm {
@@ -30,11 +29,11 @@ pub struct BodyForm {
     pub rotation: bool,
     /// Bond·g·Δt, m/s: c₀ = m_n times this.
     pub capture_speed: f64,
-    /// Of each body, kg.
+    /// Mass of each body, kg.
     pub mass: Vec<f64>,
-    /// Of each body, kg·m²: that of a solid disc, ½mr².
+    /// Moment of inertia of each body, kg·m²: that of a solid disc, ½mr².
     pub inertia: Vec<f64>,
-    /// Of each body, m: the lever arm of all its contacts.
+    /// Radius of each body, m: the lever arm of all its contacts.
     pub radius: Vec<f64>,
     /// (v_x, v_y, ω) of each body without contact impulses, m/s and rad/s.
     pub free_velocity: Vec<[f64; 3]>,
@@ -42,16 +41,17 @@ pub struct BodyForm {
     pub pair: Vec<(u32, Option<u32>)>,
     /// n of each contact, from j to i.
     pub normal: Vec<[f64; 2]>,
-    /// Term of each contact in q, m/s: that of restitution, or gap/Δt where a gap within the touch tolerance may close.
+    /// Term of each contact in q, m/s: from restitution, or gap/Δt for a gap within the touch tolerance, which may
+    /// close.
     pub restitution_velocity: Vec<f64>,
-    /// How fast the surface of the fixed body of each contact goes along t, n turned by +90°, m/s; 0 between two
-    /// bodies, and left out where none moves.
+    /// Tangential surface speed of the fixed body of each contact, along t (n turned by +90°), m/s; 0 between two
+    /// bodies. Left out if no fixed body moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub surface_speed: Vec<f64>,
 }
 
 impl BodyForm {
-    /// Checks the bodies, and that the file's W, q and c₀ are theirs.
+    /// Checks the bodies, and that the file's W, q and c₀ follow from them.
     pub(super) fn check(&self, file: &ProblemFile) -> Result<()> {
         let (bodies, contacts) = (self.mass.len(), file.nc);
         let lengths = [
@@ -104,7 +104,7 @@ impl BodyForm {
         with_model!(self.parts(file)?, M => self.check_numbers::<M>(file))
     }
 
-    /// Without friction tangential rows play no part, and need not agree.
+    /// Without friction the tangential rows have no effect and need not agree.
     fn check_numbers<M: Model>(&self, file: &ProblemFile) -> Result<()> {
         let problem = self.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;
@@ -150,7 +150,7 @@ impl BodyForm {
         Ok(())
     }
 
-    /// The model that solves this problem on its bodies.
+    /// The parts that select a model that can solve this problem on its bodies.
     pub(super) fn parts(&self, file: &ProblemFile) -> Result<ModelParts> {
         let friction = self.friction(file)?;
         Ok(ModelParts {
@@ -169,7 +169,7 @@ impl BodyForm {
         }
     }
 
-    /// The step's problem, its rows in the order of the file, those with fixed bodies first.
+    /// The step's problem, with rows in the order of the file, contacts with fixed bodies first.
     pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M> {
         let coordinates = |body: usize| {
             let [x, y, spin] = self.free_velocity[body];
@@ -218,17 +218,17 @@ impl BodyForm {
     }
 }
 
-/// True if two forms of one number are as near as rounding leaves them; not where one is NaN.
+/// True if two forms of a number agree up to rounding. NaN never agrees.
 fn agree(found: f64, expected: f64, scale: f64) -> bool {
     (found - expected).abs() <= DISAGREEMENT * scale
 }
 
-/// The problem of the step that begins at `at_secs`, the simulation of `scene` having got there by
-/// itself. `progress` is told the simulated time, s.
+/// The problem of the step that begins at `at_secs`, after the simulation of `scene` has run until then. `progress` is
+/// called with the simulated time, s.
 ///
 /// # Errors
-/// Where the time is before the start, there is no contact at it, so many that a file would not hold
-/// their matrix, the state is not finite, or a number of the problem is not.
+/// If the time is before the start, if there are no contacts at that time or too many for a file, or if the state or a
+/// number of the problem is not finite.
 pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
     if !(at_secs >= 0.0 && at_secs.is_finite()) {
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
@@ -246,7 +246,7 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
     if file.nc == 0 {
         return Err(Error::value("at", at_secs, "a time at which there are contacts"));
     }
-    // A finite scene can have contact laws whose numbers overflow, which no file can hold.
+    // Contact laws of a finite scene can still overflow, and a file cannot contain infinite numbers.
     file.delassus()?;
     file.bodies.as_ref().map_or(Ok(()), |bodies| bodies.check(&file))?;
     Ok(ProblemFile {
@@ -255,10 +255,10 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
     })
 }
 
-/// The problem of a simulation's next step. The simulation stays as it is.
+/// The problem of a simulation's next step. The simulation does not change.
 ///
 /// # Errors
-/// Where it has so many contacts that a file would not hold their matrix.
+/// If it has too many contacts for a file.
 pub fn problem_file_of(simulation: &Simulation) -> Result<ProblemFile> {
     let grains = &simulation.world().grains;
     simulation.next_problem(ProblemFileVisitor { grains })
@@ -320,14 +320,14 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
             q: free_velocities,
             c0: (problem.law.capture_speed() > 0.0).then(|| cohesions().collect()),
             start: Some(starts.collect()),
-            // Bodies know of one capture speed alone.
+            // The body form only has a single capture speed.
             bodies: problem.rows.captures.is_empty().then_some(bodies),
             matrix,
         })
     }
 }
 
-/// Fails unless a file can hold a problem.
+/// Fails if a file cannot represent the problem.
 fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))

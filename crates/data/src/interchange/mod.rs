@@ -1,12 +1,11 @@
-//! One step's contact problem as a file, and a problem from elsewhere solved here.
+//! The contact problem of one step as a file, and the solution of problems from other programs.
 //!
-//! A problem file is JSON: `nc` contacts; `W` as `row`, `col`, `val` (2 nc × 2 nc, 1/kg, rows and
-//! columns in the order N0, T0, N1, T1, …); `q` (2 nc, m/s), the relative velocities without contact
-//! impulses, restitution's term included; `mu`, a number or a list; and, where there is cohesion,
-//! `c0`, the cohesion impulse C₀Δt of each contact (N·s), and `cone`, `"shifted"` or `"compressive"`.
-//! A solution is u = W r + q with r = (P_n, P_t) in N·s; `start` may give impulses to start from.
-//! Problems of our own have their `bodies` beside W ([`BodyForm`]). Siconos' text files of plane
-//! problems are read as well (`siconos`).
+//! A problem file is JSON with these fields: `nc`, the number of contacts; `W` as `row`, `col`, `val` (2 nc × 2 nc,
+//! 1/kg, rows and columns in the order N0, T0, N1, T1, …); `q` (2 nc, m/s), the relative velocities without contact
+//! impulses, including restitution; and `mu`, a number or a list. With cohesion it also has `c0`, the cohesion impulse
+//! C₀Δt of each contact (N·s), and `cone`, `"shifted"` or `"compressive"`. A solution is u = W r + q with r = (P_n,
+//! P_t) in N·s; `start` optionally gives initial impulses. Problems that Slump writes also contain their `bodies`
+//! ([`BodyForm`]). Siconos' text files of plane problems can be read as well (`siconos`).
 
 mod bodies;
 mod several;
@@ -27,31 +26,31 @@ use crate::output::write_file;
 use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
 
-/// What a problem file must be, for messages.
+/// The expected form of a problem file, for messages.
 const FORM: &str = "the JSON of a contact problem, or Siconos' text of a plane one";
 
-/// μ of all contacts, or of each.
+/// Coefficient of friction μ, for all contacts together or for each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "mu must be a number or a list of numbers")]
 pub enum Friction {
-    /// The same for all.
+    /// The same value for all contacts.
     Same(f64),
-    /// One a contact.
+    /// One value per contact.
     Each(Vec<f64>),
 }
 
-/// What stands in a problem file; see the module for units. Plain data, checked where it is solved.
+/// Contents of a problem file; see the module for units. Plain data, checked before it is solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProblemFile {
-    /// Where the problem comes from, in words.
+    /// Origin of the problem, in words.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub comment: Option<String>,
     /// Number of contacts.
     pub nc: usize,
     /// μ.
     pub mu: Friction,
-    /// Which part of the normal impulse bounds friction.
+    /// The part of the normal impulse that bounds friction.
     #[serde(default)]
     pub cone: FrictionCone,
     /// q, m/s.
@@ -59,7 +58,7 @@ pub struct ProblemFile {
     /// C₀Δt of each contact, N·s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub c0: Option<Vec<f64>>,
-    /// (P_n, P_t) of each contact to start from, N·s.
+    /// Initial impulses (P_n, P_t) of each contact, N·s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Vec<f64>>,
     /// The bodies behind W and q.
@@ -71,10 +70,10 @@ pub struct ProblemFile {
 }
 
 impl ProblemFile {
-    /// Reads a problem file, or a text file of Siconos', and checks it.
+    /// Reads a problem file, or a text file of Siconos, and checks it.
     ///
     /// # Errors
-    /// In one sentence that names the file and what is wrong in it.
+    /// One sentence that names the file and the error in it.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path, FORM, MOST_BYTES)?;
         Self::parse(&text).map_err(|error| Error::file(path, error))
@@ -83,7 +82,7 @@ impl ProblemFile {
     /// Writes a problem file.
     ///
     /// # Errors
-    /// Where it would have more bytes than are read, or the system refuses.
+    /// If it would be larger than the largest file that is read, or the system refuses.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = self.text();
         if text.len() as u64 > MOST_BYTES {
@@ -93,10 +92,10 @@ impl ProblemFile {
         write_file(path, text.as_bytes())
     }
 
-    /// Reads the text of a problem file, or of one of Siconos', and checks it.
+    /// Parses the text of a problem file, or of a text file of Siconos, and checks it.
     ///
     /// # Errors
-    /// In one sentence that names what is wrong.
+    /// One sentence that names the error.
     pub fn parse(text: &str) -> Result<Self> {
         let file: Self = if text.trim_start().starts_with('{') {
             serde_json::from_str(text).map_err(|error| {
@@ -116,9 +115,9 @@ impl ProblemFile {
         Ok(file)
     }
 
-    /// The file's text. Numbers are as short as they can be and still read back bit for bit.
+    /// The text of the file. Numbers are as short as possible and still read back bit for bit.
     pub fn text(&self) -> String {
-        // Strings, numbers and lists of them have no way to fail.
+        // Serialising strings, numbers and lists of them cannot fail.
         serde_json::to_string(self).expect("a problem is always written") + "\n"
     }
 
@@ -135,15 +134,15 @@ impl ProblemFile {
         self.c0.clone().unwrap_or_else(|| vec![0.0; self.nc])
     }
 
-    /// The problem in W, with the impulses to start from.
+    /// The problem in W, with its initial impulses.
     ///
     /// # Errors
-    /// Names what does not fit.
+    /// Names the field that does not fit.
     pub fn delassus(&self) -> Result<DelassusProblem> {
         if self.nc == 0 {
             return Err(Error::value("nc", 0, "at least 1"));
         }
-        // Before anything is made that is as long as the file says, rather than as the file is.
+        // Checked before anything is allocated whose size is given by `nc` and not by the size of the file.
         if Some(self.q.len()) != self.nc.checked_mul(2) {
             let allowed = format!("{} (2 nc)", 2 * self.nc as u128);
             return Err(Error::value("the length of q", self.q.len(), allowed));

@@ -1,4 +1,4 @@
-//! The solutions of a problem file under Coulomb's law, from several starts.
+//! The solutions of a problem file under Coulomb's law, from several initial guesses.
 
 use slump_core::with_model;
 
@@ -12,25 +12,26 @@ use crate::solver::{Method, Model, SolutionSearch, SolverSettings, velocity_dist
 pub struct FoundSolution {
     /// The common residual.
     pub residual: f64,
-    /// True if that is within the tolerance of the search. A result that is not may be near a solution that others led to.
+    /// True if the residual is within the tolerance of the search. A result that is not may be close to a solution that
+    /// other initial guesses reached.
     pub is_solved: bool,
-    /// The starts that led to it, from 0: the impulses of the file, none, then random ones.
+    /// The initial guesses that led to it, counted from 0: the impulses of the file, zero, then random impulses.
     pub starts: Vec<u32>,
-    /// How far its velocities are from those of each solution before it, m/s: root mean square, weighted with mass.
+    /// Distance of its velocities from those of each earlier solution, m/s: root mean square, weighted with mass.
     pub distances: Vec<f64>,
-    /// The grain whose velocity differs most from the first solution, and by how much, m/s.
+    /// The grain whose velocity differs most from the first solution, and that difference, m/s.
     pub farthest: (usize, f64),
     /// (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
     pub velocities: Vec<[f64; 3]>,
 }
 
-/// Starts of one search at the most.
+/// Largest number of initial guesses in one search.
 pub const MOST_STARTS: u32 = 1_000;
 
-/// Looks for solutions of a file's problem.
+/// Searches for solutions of a file's problem.
 ///
 /// # Errors
-/// Where the file is at fault or has no bodies, or numbers of the search are out of their range.
+/// If the file is wrong or has no bodies, or a parameter of the search is outside its range.
 pub fn solutions_of_file(
     file: &ProblemFile,
     search: &SolutionSearch,

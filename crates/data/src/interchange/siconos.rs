@@ -1,5 +1,6 @@
-//! Reads plane problems of contact with friction in Siconos' text format: dimension, number of contacts, kind of storage, the matrix's two sizes,
-//! kind of sparse storage, the matrix as CSparse prints its compressed columns, then q, then μ.
+//! Reads plane frictional contact problems in Siconos' text format. Its parts are the dimension, the number of
+//! contacts, the kind of storage, the two sizes of the matrix, the kind of sparse storage, the matrix as CSparse prints
+//! its compressed columns, then q, then μ.
 
 use std::str::{FromStr, Lines};
 
@@ -13,7 +14,7 @@ const SPARSE: usize = 2;
 /// Siconos' number for compressed columns.
 const COMPRESSED_COLUMNS: usize = 2;
 
-/// Reads the text of such a file, without checking the problem in it.
+/// Parses the text without checking the problem.
 pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     let mut lines = text.lines();
     let mut number = |what: &str| first_word::<usize>(&mut lines, what);
@@ -54,7 +55,7 @@ pub(super) fn parse(text: &str) -> Result<ProblemFile> {
 /// Reads "col 3 : locations 6 to 8" and, below each such line, "row : value" for each location.
 fn columns(lines: &mut Lines, count: usize) -> Result<Triplets> {
     let mut matrix = Triplets::default();
-    // CSparse's version, then sizes and norm.
+    // Skips CSparse's version, then sizes and norm.
     lines.next();
     lines.next();
     for column in 0..count {

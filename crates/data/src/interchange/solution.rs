@@ -1,4 +1,4 @@
-//! A problem file solved: by bodies where the file has them, else by W.
+//! Solves a problem file: by bodies if the file has them, else by W.
 
 use std::time::Instant;
 
@@ -14,30 +14,29 @@ use crate::solver::{
     is_ended, solve, solve_delassus,
 };
 
-/// What a method made of a problem.
+/// Result of a method for a problem.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// Number of contacts.
     pub contacts: usize,
     /// The method's name.
     pub method: String,
-    /// True if it worked on bodies, false if on W alone.
+    /// True if the method worked on bodies, false if only on W.
     pub on_bodies: bool,
-    /// Sweeps, or iterations that cost about as much.
+    /// Sweeps, or iterations of about the same cost.
     pub sweeps: u32,
-    /// Matrices factorised.
+    /// Number of factorised matrices.
     pub factorisations: u32,
-    /// Time of the solve alone, s; the least of the repeats.
+    /// Time of the solve only, s; the least of the repeats.
     pub seconds: f64,
-    /// True if the method got to its tolerance, by what it says and by the residual of `r`.
+    /// True if the method reached its tolerance, according to the method and to the residual of `r`.
     pub converged: bool,
-    /// True if it did not because it had stalled, rather than being stopped too early: more sweeps are of
-    /// no use.
+    /// True if it failed because it stalled and not because it was stopped too early. More sweeps would not help.
     pub stalled: bool,
     /// The common residual of `r`, from the file's W and q.
     #[serde(with = "number")]
     pub residual: f64,
-    /// (v_n, v_t) of each contact at the end of the step, restitution's term included, W r + q, m/s.
+    /// (v_n, v_t) of each contact at the end of the step, W r + q, including restitution, m/s.
     pub u: Vec<f64>,
     /// (P_n, P_t) of each contact, N·s.
     pub r: Vec<f64>,
@@ -49,16 +48,16 @@ pub struct Solution {
 impl Solution {
     /// The text of a solution file.
     pub fn text(&self) -> String {
-        // Strings, numbers and lists of them have no way to fail.
+        // Serialising strings, numbers and lists of them cannot fail.
         serde_json::to_string(self).expect("a solution is always written") + "\n"
     }
 }
 
-/// Solves a file's problem `repeats` times (at least once) from its start, with the method of the
-/// settings to a residual of their tolerance.
+/// Solves a file's problem `repeats` times (at least once) from its initial impulses, with the method and the tolerance
+/// of the settings.
 ///
 /// # Errors
-/// Where the file is at fault, or the method cannot take it.
+/// If the file is wrong, or the method cannot solve it.
 pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -> Result<Solution> {
     settings.validate()?;
     let mut delassus = file.delassus()?;
@@ -78,7 +77,7 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     let TimedSolution { seconds, report, impulses, velocities } = solved;
     delassus.set_impulses(impulses.iter().copied());
     let residual = delassus.residual();
-    // Bodies carry on what the impulses before have left of their digits: a start of 1e80 N·s leaves none.
+    // Body velocities lose the digits that the initial impulses used up: after a start of 1e80 N·s they have none.
     let is_solved = residual <= (2.0 * settings.tolerance).max(DISAGREEMENT);
     Ok(Solution {
         contacts: file.nc,
@@ -104,7 +103,7 @@ struct TimedSolution {
     velocities: Option<Vec<[f64; 3]>>,
 }
 
-/// Solves copies of a problem; the least time (s), what the solve gave, and the problem after it.
+/// Solves copies of a problem. Returns the least time (s), the result of the solve, and the problem after it.
 fn least_time<P: Clone, T>(
     repeats: u32,
     problem: &P,
@@ -119,7 +118,7 @@ fn least_time<P: Clone, T>(
     let mut best = once();
     for _ in 1..repeats {
         let next = once();
-        // A solve that somebody ended has no time to be compared.
+        // The time of an interrupted solve is not comparable.
         if is_ended(SolveProgress { sweeps: 0, residual: None }) {
             break;
         }

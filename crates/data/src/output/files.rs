@@ -1,4 +1,4 @@
-//! Files that are whole or not there, where they go, and what they say of themselves.
+//! Files that are written completely or not at all, their destinations, and the texts stored in them.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -12,17 +12,17 @@ use std::path::{Path, PathBuf};
 use crate::draft::{DraftFile, nameless_file};
 use crate::error::{Error, Result};
 
-/// Ending of the name that a file has until it is whole.
+/// Ending of the name of an incomplete file.
 const ENDING_OF_DRAFT: &str = ".part";
-/// Bytes of a name that the file systems in use all take, without what a draft has besides: `.` in front, and `.`, six
-/// letters and the ending behind.
+/// Longest name, bytes, that all common file systems accept, minus the additions for a draft: `.` in front, and `.`,
+/// six letters and the ending behind.
 #[cfg(not(target_arch = "wasm32"))]
 const MOST_OF_NAME: usize = 255 - 8 - ENDING_OF_DRAFT.len();
-/// Links that lead on to links; more than the system itself follows are a circle.
+/// Largest number of symbolic links that are followed. The system follows fewer, so more links are a cycle.
 const MOST_LINKS: usize = 40;
 
-/// The name that a file was to have, where `name` is what a kill left of it, `.NAME.LETTERS.part`: hidden, so that
-/// readers of whole folders pass it by. Any other name is its own.
+/// The intended name of a file if `name` is that of a draft that a killed process left, `.NAME.LETTERS.part`, which is
+/// hidden so that programs that read whole folders skip it. Otherwise `name` itself.
 pub fn final_name(name: &str) -> &str {
     let inner = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(ENDING_OF_DRAFT));
     match inner.and_then(|rest| rest.rsplit_once('.')) {
@@ -35,13 +35,13 @@ pub fn final_name(name: &str) -> &str {
     }
 }
 
-/// A file that has its name only once it is whole, so that a run that is stopped leaves no half file
-/// behind and destroys none. Devices and pipes are written to as they are.
+/// A file that gets its name only when it is complete. A run that is stopped therefore leaves no incomplete file and
+/// destroys no existing one. Devices and pipes are written directly.
 pub struct PendingFile {
-    /// As the user wrote it.
+    /// The path as the user wrote it.
     path: PathBuf,
     destination: Destination,
-    /// In no folder until it is whole: it is gone with the process, however that ends.
+    /// The file has no name until it is complete, so it disappears with the process, however the process ends.
     file: DraftFile,
 }
 
@@ -49,7 +49,7 @@ impl PendingFile {
     /// Starts a file.
     ///
     /// # Errors
-    /// Names the file and what the system says.
+    /// Names the file and the system's message.
     pub fn start(path: &Path) -> Result<Self> {
         let destination = Destination::of(path)?;
         let file = destination
@@ -58,24 +58,24 @@ impl PendingFile {
         Ok(Self { path: path.to_owned(), destination, file })
     }
 
-    /// What to write to.
+    /// The file to write to.
     pub fn file(&mut self) -> &mut DraftFile {
         &mut self.file
     }
 
-    /// Writes.
+    /// Writes bytes.
     ///
     /// # Errors
-    /// Names the file and what the system says.
+    /// Names the file and the system's message.
     pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
         self.file.write_all(bytes).map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Gives the file its name. With `safe` it is on the disk before the name is, so that even a
-    /// machine that falls over leaves the old file or the new one.
+    /// Gives the file its name. With `safe` the data is on the disk before the name, so that even a crash of the
+    /// machine leaves the old file or the new one.
     ///
     /// # Errors
-    /// Names the file and what the system says.
+    /// Names the file and the system's message.
     pub fn finish(mut self, safe: bool) -> Result<()> {
         if self.destination.is_special {
             return Ok(());
@@ -83,20 +83,20 @@ impl PendingFile {
         self.put(safe).map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Has it fetched by whoever has a place for it.
+    /// Stores the file in memory, from where it can be fetched.
     #[cfg(target_arch = "wasm32")]
     fn put(&mut self, _safe: bool) -> std::io::Result<()> {
         crate::memory::keep_written(&self.destination.path, &self.file);
         Ok(())
     }
 
-    /// Copies it to a hidden name beside its destination, which it then takes in one go.
+    /// Copies the file to a hidden name in the destination's folder and then renames it in a single operation.
     #[cfg(not(target_arch = "wasm32"))]
     fn put(&mut self, safe: bool) -> std::io::Result<()> {
         let Destination { path, permissions, .. } = &self.destination;
         let name = shortened(path.file_name().unwrap_or_default());
         let prefix = [".".as_ref(), &*name, ".".as_ref()].join(OsStr::new(""));
-        // With the permissions that the umask leaves to any new file.
+        // The umask sets the permissions, as for any new file.
         let mut draft = tempfile::Builder::new()
             .prefix(&prefix)
             .suffix(ENDING_OF_DRAFT)
@@ -114,7 +114,7 @@ impl PendingFile {
     }
 }
 
-/// As much of a name as a draft's has room for.
+/// Shortens a name so that the name of its draft is not too long.
 #[cfg(not(target_arch = "wasm32"))]
 fn shortened(name: &OsStr) -> Cow<'_, OsStr> {
     if name.len() <= MOST_OF_NAME {
@@ -124,18 +124,18 @@ fn shortened(name: &OsStr) -> Cow<'_, OsStr> {
     Cow::Owned(text[..text.floor_char_boundary(MOST_OF_NAME)].into())
 }
 
-/// The folder that a file is in.
+/// The folder of a file.
 pub fn folder_of(path: &Path) -> &Path {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.unwrap_or(Path::new("."))
 }
 
-/// What a path leads to, behind all symbolic links.
+/// The destination of a path, after all symbolic links.
 struct Destination {
     path: PathBuf,
-    /// Those of the file that is there.
+    /// Permissions of the existing file.
     permissions: Option<Permissions>,
-    /// True if what is there is no plain file but a device, a pipe or a socket, which no file must replace.
+    /// True if the destination is not a plain file but a device, a pipe or a socket, which must not be replaced.
     is_special: bool,
 }
 
@@ -150,7 +150,7 @@ impl Destination {
                 let permissions = there.filter(Metadata::is_file).map(|there| there.permissions());
                 return Ok(Self { path: path_there, permissions, is_special });
             };
-            // The links of open files name no place: they are followed by the system alone.
+            // Links of open files do not lead to a path; only the system can follow them.
             if path_there.starts_with("/proc") || path_there.starts_with("/dev") {
                 return Ok(Self { path: path_there, permissions: None, is_special: true });
             }
@@ -159,7 +159,7 @@ impl Destination {
         Err(Error::file(path, "is a symbolic link that leads back to itself"))
     }
 
-    /// What is written to until it is whole; what is no plain file at once.
+    /// A file without a name for a plain file; for any other destination, the destination itself.
     fn draft(&self) -> std::io::Result<DraftFile> {
         #[cfg(not(target_arch = "wasm32"))]
         if self.is_special {
@@ -169,11 +169,11 @@ impl Destination {
     }
 }
 
-/// Makes `folder` if it is not there and checks that files can be written in it. `field` is what asks for
-/// it, for messages.
+/// Creates `folder` if it is missing and checks that files can be written in it. `field` is the name of the option, for
+/// messages.
 ///
 /// # Errors
-/// Names the field and the folder, and says what the system says.
+/// Names the field and the folder, with the system's message.
 pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
     if folder.as_os_str().is_empty() {
         return Err(Error::value(field, "''", "the name of a folder"));
@@ -184,11 +184,11 @@ pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
     })
 }
 
-/// Checks that a file can be written at `path`, and makes its folder if it is not there. `field` is what
-/// asks for it, for messages.
+/// Checks that a file can be written at `path`, and creates its folder if it is missing. `field` is the name of the
+/// option, for messages.
 ///
 /// # Errors
-/// Names the field and the file, and says what is in the way.
+/// Names the field and the file, and the reason.
 pub fn check_file(field: &str, path: &Path) -> Result<()> {
     let refuse = |allowed: &str| Err(Error::value(field, path.display(), allowed));
     let destination = Destination::of(path)?;
@@ -209,7 +209,7 @@ pub fn check_file(field: &str, path: &Path) -> Result<()> {
         .or_else(|error| refuse(&format!("a file in a folder that can be written to ({error})")))
 }
 
-/// Checks as [`check_file`] does, and that no file that has anything in it is at `path`, unless it may be replaced
+/// Checks as [`check_file`] does. Also refuses a file at `path` that is not empty, unless it may be replaced
 /// (`overwrite`).
 ///
 /// # Errors
@@ -224,10 +224,10 @@ pub fn check_new_file(field: &str, path: &Path, overwrite: bool) -> Result<()> {
     Err(Error::value(field, path.display(), allowed))
 }
 
-/// Removes the drafts that kills have left in a folder of files that are whole by now.
+/// Removes the drafts that killed processes left in a folder, if the corresponding files are complete by now.
 ///
 /// # Errors
-/// Names the file and what the system says.
+/// Names the file and the system's message.
 pub fn remove_drafts(folder: &Path) -> Result<()> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     for name in entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()) {
@@ -239,14 +239,14 @@ pub fn remove_drafts(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Where the file is that a path leads to, by the one name that its folder has: files that take each other's place have
-/// the same. None where it is a device or a pipe, which takes all that comes.
+/// The unique path of the file behind a path, so that two paths of one file are equal. `None` for a device or a pipe,
+/// which accepts all data.
 ///
 /// # Errors
-/// Where a link leads back to itself.
+/// If the links form a cycle.
 pub fn resolved(path: &Path) -> Result<Option<PathBuf>> {
     let Destination { path, is_special, .. } = Destination::of(path)?;
-    // Where there is no folder, there is no file.
+    // Without the folder there is no file.
     let folder = folder_of(&path).canonicalize().unwrap_or_else(|_| folder_of(&path).to_owned());
     Ok((!is_special).then(|| folder.join(path.file_name().unwrap_or_default())))
 }
@@ -258,20 +258,20 @@ fn try_to_write(folder: &Path) -> std::io::Result<()> {
     nameless_file(folder).map(drop)
 }
 
-/// Writes a file in one go: a run that is stopped leaves no half file behind and destroys none.
+/// Writes a file in a single operation: a run that is stopped leaves no incomplete file and destroys no existing one.
 ///
 /// # Errors
-/// Names the file and what the system says.
+/// Names the file and the system's message.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = PendingFile::start(path)?;
     file.write(bytes)?;
     file.finish(true)
 }
 
-/// Removes a file, where it is there.
+/// Removes a file if it exists.
 ///
 /// # Errors
-/// Names the file and what the system says.
+/// Names the file and the system's message.
 pub fn remove_if_there(path: &Path) -> Result<()> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
@@ -279,12 +279,12 @@ pub fn remove_if_there(path: &Path) -> Result<()> {
     }
 }
 
-/// Keywords and texts, in their order. Keywords are ASCII, at most 79 characters: PNG has no others.
+/// Keywords with texts, in order. Keywords are ASCII with at most 79 characters, as PNG requires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texts(Vec<(String, String)>);
 
 impl Default for Texts {
-    /// The program and its version alone.
+    /// Only the program and its version.
     fn default() -> Self {
         let program = concat!("slump ", env!("CARGO_PKG_VERSION"));
         Self(vec![("Software".into(), program.into())])
@@ -292,7 +292,7 @@ impl Default for Texts {
 }
 
 impl Texts {
-    /// Says one thing more.
+    /// Adds a keyword with its text.
     pub fn add(&mut self, keyword: impl Into<String>, text: impl Into<String>) {
         self.0.push((keyword.into(), text.into()));
     }
@@ -303,12 +303,12 @@ impl Texts {
         self.0.iter().find(|(name, _)| name == keyword).map(|(_, text)| text.as_str())
     }
 
-    /// All of them.
+    /// All keywords with their texts.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.0.iter().map(|(keyword, text)| (keyword.as_str(), text.as_str()))
     }
 
-    /// A line each: keyword, colon, text.
+    /// One line for each: keyword, colon, text.
     pub fn lines(&self) -> String {
         self.iter().map(|(keyword, text)| format!("{keyword}: {text}\n")).collect()
     }

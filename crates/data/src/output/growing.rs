@@ -7,15 +7,14 @@ use std::path::{Path, PathBuf};
 use super::locks::is_at;
 use crate::error::{Error, Result};
 
-/// Bytes of a page of memory on most machines, and a part of one on all others.
+/// Size of a memory page on most machines, bytes; on all others the page is a multiple of it.
 const PAGE: u64 = 4096;
 
-/// A file that grows by whole rows, so that a run that is killed, or that fills the disk, leaves a table
-/// that can be read.
+/// A file that grows by whole rows, so that it stays a readable table if the run is killed or the disk is full.
 pub struct GrowingFile {
     path: PathBuf,
     file: File,
-    /// Length of the rows that are in the file, bytes.
+    /// Length of the complete rows in the file, bytes.
     whole: u64,
 }
 
@@ -23,18 +22,17 @@ impl GrowingFile {
     /// Starts an empty file.
     ///
     /// # Errors
-    /// Names the file and what the system says.
+    /// Names the file and the system's message.
     pub fn start(path: PathBuf) -> Result<Self> {
         let file = File::create(&path)
             .map_err(|error| Error::file(&path, format!("cannot be written ({error})")))?;
         Ok(Self { path, file, whole: 0 })
     }
 
-    /// Goes on with the first `whole` bytes of a file, of which none need be there if it is 0; what is
-    /// behind them is dropped.
+    /// Continues a file after its first `whole` bytes and drops the rest. If `whole` is 0, the file need not exist.
     ///
     /// # Errors
-    /// Names the file and what the system says, or that it is shorter.
+    /// Names the file and the system's message, or says that it is shorter.
     pub fn go_on(path: PathBuf, whole: u64) -> Result<Self> {
         let refuse = |error| Error::file(&path, error);
         let file = OpenOptions::new().write(true).create(whole == 0).truncate(false).open(&path);
@@ -49,12 +47,12 @@ impl GrowingFile {
         Ok(Self { path, file, whole })
     }
 
-    /// Length of the rows that are in the file, bytes.
+    /// Length of the complete rows in the file, bytes.
     pub fn length(&self) -> u64 {
         self.whole
     }
 
-    /// Where it is.
+    /// The path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -62,7 +60,7 @@ impl GrowingFile {
     /// Writes rows, each with its line end.
     ///
     /// # Errors
-    /// Names the file and what the system says; it ends with a whole row.
+    /// Names the file and the system's message; the file then still ends with a complete row.
     pub(crate) fn add(&mut self, rows: &[u8]) -> Result<()> {
         self.add_rows(rows).map_err(|error| Error::file(&self.path, error))
     }
@@ -70,12 +68,12 @@ impl GrowingFile {
     /// Writes rows, each with its line end.
     ///
     /// # Errors
-    /// What the system says; it ends with a whole row.
+    /// The system's message; the file then still ends with a complete row.
     pub fn add_rows(&mut self, mut rows: &[u8]) -> std::io::Result<()> {
         while !rows.is_empty() {
             let (now, later) = rows.split_at(self.uncut(rows));
             if let Err(error) = self.file.write_all(now) {
-                // A part of a row may be there. A pipe has taken it; a file gives it back.
+                // A part of a row may have been written. It is cut off; a pipe ignores this.
                 let _ = self.file.set_len(self.whole);
                 return Err(error);
             }
@@ -85,17 +83,19 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes rows with a head, each with its line end, so that they are there in one go: the rows are written
-    /// below a line that begins with `draft`, which readers are to skip with what follows, and last of all
-    /// the head takes its place. A kill can cut a write where a page of the file ends, so a head that lies in
-    /// two pages is written from its end: what stands in the second page still belongs to the draft until
-    /// what stands in the first has changed, all of it or nothing. Where the first page ends within the word
-    /// of the draft, the head's letters may follow those of it that are left; where it ends in what `draft`
-    /// and the head have in common, the second page says it all. So a reader must know a draft by the first
-    /// letter that no head has there.
+    /// Writes rows with a head, each with its line end, so that all of it appears in one operation. The rows are first
+    /// written below a line that begins with `draft`, which readers must skip with the rows below it. Finally the head
+    /// replaces that line.
+    ///
+    /// A kill can only interrupt a write at the end of a page of the file. A head that spans two pages is therefore
+    /// written from its end: the part in the second page still belongs to the draft until the part in the first page
+    /// has changed, which happens completely or not at all. If the first page ends within the word of the draft,
+    /// letters of the head may follow the rest of that word. If it ends within the common beginning of `draft` and the
+    /// head, the second page decides. A reader must therefore recognise a draft by the first letter that no head has at
+    /// that position.
     ///
     /// # Errors
-    /// Names the file and what the system says; then it has nothing of them.
+    /// Names the file and the system's message; then the file contains nothing of the rows or the head.
     pub(crate) fn add_at_once(&mut self, draft: &str, head: &str, rows: &str) -> Result<()> {
         let below_draft = below_draft(draft, head, rows);
         let written = self
@@ -111,14 +111,14 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes over what stands behind what is whole, the last page first.
+    /// Overwrites the bytes after the complete rows, the last page first.
     fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         self.pages_from_the_last(bytes.len())
             .into_iter()
             .try_for_each(|part| self.put(part.start, &bytes[part]))
     }
 
-    /// The parts of so many bytes behind what is whole that lie in one page each, the last first.
+    /// Splits `length` bytes after the complete rows into parts that lie in one page each, the last first.
     fn pages_from_the_last(&self, length: usize) -> Vec<std::ops::Range<usize>> {
         let room = (PAGE - self.whole % PAGE) as usize;
         let starts = std::iter::once(0).chain((room..length).step_by(PAGE as usize));
@@ -128,27 +128,27 @@ impl GrowingFile {
         pages
     }
 
-    /// Writes so many bytes behind what is whole.
+    /// Writes bytes at an offset after the complete rows.
     fn put(&mut self, behind: usize, bytes: &[u8]) -> std::io::Result<()> {
         self.file.seek(SeekFrom::Start(self.whole + behind as u64))?;
         self.file.write_all(bytes)
     }
 
-    /// How many bytes to write at once. A kill can cut a write where a page of the file ends, and only
-    /// there: so rows that lie in one page are written together, and one that lies in two alone, which
-    /// leaves some 0.1 µs in which it can be cut.
+    /// Number of bytes to write in one operation. A kill can interrupt a write only at the end of a page of the file.
+    /// Rows within one page are therefore written together, and a row that spans two pages is written alone, which
+    /// leaves about 0.1 µs in which it can be cut.
     fn uncut(&self, rows: &[u8]) -> usize {
         let room = (PAGE - self.whole % PAGE) as usize;
         let first = || rows.iter().position(|&byte| byte == b'\n').map(|last| last + 1);
         end_of_last(&rows[..room.min(rows.len())]).or_else(first).unwrap_or(rows.len())
     }
 
-    /// Has all of it on the disk.
+    /// Writes all data to the disk.
     ///
     /// # Errors
-    /// Where it is no longer at its place.
+    /// If the file is no longer at its path.
     pub fn sync(&self) -> Result<()> {
-        // Pipes and devices know no such thing.
+        // Pipes and devices do not support this.
         let _ = self.file.sync_all();
         if is_at(&self.file, &self.path) {
             return Ok(());
@@ -158,13 +158,13 @@ impl GrowingFile {
     }
 }
 
-/// Rows below a line of draft that is as long as the head. The padding of `format!` ends at 65,535 characters.
+/// Rows below a draft line that is as long as the head. The padding of `format!` is limited to 65,535 characters.
 fn below_draft(draft: &str, head: &str, rows: &str) -> String {
     let room = head.len().saturating_sub(draft.len() + 1);
     format!("{draft}{}\n{rows}", " ".repeat(room))
 }
 
-/// Where the last row ends that does.
+/// End of the last complete row.
 pub fn end_of_last(rows: &[u8]) -> Option<usize> {
     rows.iter().rposition(|&byte| byte == b'\n').map(|last| last + 1)
 }
@@ -173,7 +173,7 @@ pub fn end_of_last(rows: &[u8]) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// What a file says after every write of a head, wherever its pages end.
+    /// Checks the file after every write of a head, for every position of the page end.
     #[test]
     fn a_head_over_the_end_of_a_page_is_a_draft_until_it_is_whole() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Folders and files that one run writes at a time.
+//! Locks for folders and files that only one run may write at a time.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use super::terminal::note_line;
 use crate::error::{Error, Result, place};
 
-/// What is written in a folder by one run at a time: the name of the file that the run holds locked. The
-/// lock ends with the process, however that ends; a file that was left behind locks nothing.
+/// Kinds of output that only one run at a time may write into a folder. Each has the name of a file that the run locks.
+/// The lock ends with the process, however the process ends; a file that is left behind locks nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locked {
-    /// Pictures, and what is beside them.
+    /// Pictures and the files that accompany them.
     Pictures,
     /// A recording. Pictures may be in the same folder.
     Recording,
@@ -25,21 +25,21 @@ impl Locked {
     }
 }
 
-/// Opens the file whose lock protects `path`, a file or a folder that is there: `path` itself, so that nobody can remove the
-/// lock alone.
+/// Opens the file whose lock protects `path`, an existing file or folder: `path` itself, so that nobody can remove only
+/// the lock.
 ///
 /// # Errors
-/// Where the system does not open it.
+/// If the system does not open it.
 #[cfg(not(windows))]
 pub fn lock_of(path: &Path) -> std::io::Result<File> {
     File::open(path)
 }
 
-/// Opens the file whose lock protects `path`, a file or a folder that is there. Windows locks no folder, and keeps even the
-/// owner of a lock from reading the file by another handle, so the lock is a file of its own.
+/// Opens the file whose lock protects `path`, an existing file or folder. Windows does not lock folders, and prevents
+/// even the owner of a lock from reading the file by another handle, so the lock is a separate file.
 ///
 /// # Errors
-/// Where the system does not open it.
+/// If the system does not open it.
 #[cfg(windows)]
 pub fn lock_of(path: &Path) -> std::io::Result<File> {
     let lock = if path.is_dir() {
@@ -50,17 +50,18 @@ pub fn lock_of(path: &Path) -> std::io::Result<File> {
     OpenOptions::new().create(true).truncate(false).write(true).open(lock)
 }
 
-/// A folder that programs write to side by side, each its own part, unless one of them has it alone.
+/// A folder into which several programs write different parts at the same time, unless one of them locks it
+/// exclusively.
 pub struct SharedFolder {
     path: PathBuf,
     folder: File,
 }
 
 impl SharedFolder {
-    /// Takes a folder that is there.
+    /// Locks an existing folder for shared use.
     ///
     /// # Errors
-    /// Where another process has it alone, or it cannot be opened.
+    /// If another process has locked it exclusively, or it cannot be opened.
     pub fn of(path: &Path) -> Result<Self> {
         let folder = lock_of(path).map_err(|error| Error::file(path, error))?;
         let shared = Self { path: path.to_owned(), folder };
@@ -71,12 +72,13 @@ impl SharedFolder {
         }
     }
 
-    /// Does something while no other process has a part of it; nothing where one has.
+    /// Calls a function while no other process uses the folder. Returns `None`, without a call, if another process uses
+    /// it.
     ///
     /// # Errors
-    /// Those of what is done, and where another process took it alone in between.
+    /// The errors of the function, and an error if another process locked the folder exclusively in between.
     pub fn alone<T>(&self, act: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
-        // A lock that is held is not for changing.
+        // A shared lock cannot be upgraded, so it is released first.
         let _ = self.folder.unlock();
         let done = if self.is_taken(self.folder.try_lock()) { None } else { Some(act()) };
         let _ = self.folder.unlock();
@@ -87,7 +89,7 @@ impl SharedFolder {
         }
     }
 
-    /// That it has to be free first.
+    /// The error that the folder is in use.
     pub fn in_use(&self) -> Error {
         in_use(&self.path)
     }
@@ -104,12 +106,12 @@ impl SharedFolder {
     }
 }
 
-/// That another program has to end before a file or a folder is written to.
+/// The error that another program must end before a file or a folder can be written.
 pub fn in_use(path: &Path) -> Error {
     Error::file(path, "is being written by another program, which must end first")
 }
 
-/// Some file systems have no locks; to write there at all is worth more.
+/// Some file systems have no locks. Writing without a lock is better than not writing at all.
 fn note_unlocked(folder: &Path, error: &std::io::Error) {
     let folder = place(folder);
     note_line(format_args!(
@@ -117,17 +119,17 @@ fn note_unlocked(folder: &Path, error: &std::io::Error) {
     ));
 }
 
-/// A folder in which this process alone writes what is locked until this is dropped.
+/// The exclusive right of this process to write one kind of output into a folder, until this value is dropped.
 pub struct FolderLock {
     path: PathBuf,
     _file: File,
 }
 
 impl FolderLock {
-    /// Locks a folder that is there.
+    /// Locks an existing folder.
     ///
     /// # Errors
-    /// Where another process has it, or no file can be written in it.
+    /// If another process has locked it, or no file can be written in it.
     pub fn of(folder: &Path, what: Locked) -> Result<Self> {
         let path = folder.join(what.name());
         loop {
@@ -141,7 +143,7 @@ impl FolderLock {
                 }
                 Err(TryLockError::Error(error)) => note_unlocked(folder, &error),
             }
-            // Another run may have removed its file between opening and locking it here.
+            // Between opening and locking, another run may have removed the file.
             if is_at(&file, &path) {
                 return Ok(Self { path, _file: file });
             }
@@ -151,7 +153,7 @@ impl FolderLock {
 
 impl Drop for FolderLock {
     fn drop(&mut self) {
-        // While it is still locked. A file that stays does no harm.
+        // Removed while it is still locked. A file that remains does no harm.
         let _ = std::fs::remove_file(&self.path);
     }
 }

@@ -1,5 +1,5 @@
-//! What all long work shares: files that are whole or not there, words on streams that may be closed,
-//! signals that ask for an end, and how far it has come.
+//! Services for all long work: files that are written completely or not at all, output to streams that may be closed,
+//! signals that ask the program to end, and progress.
 
 mod files;
 mod growing;

@@ -1,5 +1,5 @@
-//! Files that this program wrote, known by how they begin: no name, and no list that anyone can edit, is enough for
-//! removing one.
+//! Recognises files that Slump wrote by their first bytes. A name, or a list that anyone can edit, is not sufficient
+//! evidence for removing a file.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -8,14 +8,14 @@ use std::path::Path;
 use super::files::final_name;
 use crate::error::{Error, Result};
 
-/// Bytes in which a file says what it is, behind whatever it says of its run.
+/// Length of the beginning of a file that identifies it, bytes, including any description of its run.
 const MOST_OF_HEAD: u64 = 1 << 20;
-/// Bytes at the end of a Parquet file, where it says who wrote it.
+/// Length of the end of a Parquet file that names the program that wrote it, bytes.
 const TAIL: u64 = 4096;
 
-/// How lines of journals begin.
+/// First bytes of a line of a journal.
 const OF_JOURNAL: &[u8] = b"{\"checksum\":\"";
-/// How files begin that this program writes, and what else is found there.
+/// First bytes of files that Slump writes, with other bytes that must also occur in the beginning of the file.
 const BEGINNINGS: [(&[u8], &[u8]); 13] = [
     (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
     (b"{\n  \"program\": \"slump\",\n", b""),
@@ -30,22 +30,26 @@ const BEGINNINGS: [(&[u8], &[u8]); 13] = [
     (b"ITEM: TIME\n", b"\nITEM: ENTRIES id name motion "),
     (b"slump-state ", b""),
     (
-        b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <ImageData WholeExtent=\"",
+        b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+            header_type=\"UInt64\">\n  <ImageData WholeExtent=\"",
         b" Name=\"smoothing_width\" ",
     ),
 ];
-/// Of what other programs read and have no word for who wrote it.
+/// First bytes of formats that have no field for the program that wrote them.
 const OF_VTK: [&[u8]; 2] = [
-    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
-    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
+    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
+        byte_order=\"LittleEndian\">\n<Collection>\n",
+    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+        header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
 ];
-/// A state that waits for being drawn, behind its length.
+/// First bytes, after its length, of a state that waits to be drawn.
 const STATE: &[u8] = b"\x82\xa6number";
 
-/// True if this program wrote a file, or as much of it as a kill left. What holds nothing is nobody's.
+/// True if this program wrote a file, even if a kill cut it short. A blank file is also recognised, because it is of no
+/// use to anybody.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// If it cannot be read.
 pub fn is_recognised(path: &Path) -> Result<bool> {
     recognised(path).map_err(|error| Error::file(path, error))
 }
@@ -81,7 +85,8 @@ fn recognised(path: &Path) -> std::io::Result<bool> {
         || head.get(8..).is_some_and(|state| state.starts_with(STATE)))
 }
 
-/// Refuses a file that is to be removed or written over and that this program did not write. `option` asks for it.
+/// Refuses a file that is to be removed or overwritten but that this program did not write. `option` is the name of the
+/// option.
 ///
 /// # Errors
 /// Names the file.

@@ -1,10 +1,10 @@
-//! Files that this program alone reads: a line, and what it tells of.
+//! Files that only this program reads: one line that describes the content, then the content.
 //!
 //! > ⟨magic⟩ ⟨format⟩ ⟨version of the program⟩ ⟨bytes that follow⟩ ⟨their BLAKE3 checksum⟩
 //!
-//! What follows is MessagePack with the names of all fields. Nothing of it is looked at before the
-//! checksum is found to be its own, and nothing of another version ever: what a number means, and what the
-//! next step makes of it, may differ.
+//! The content is MessagePack with the names of all fields. It is not parsed before its checksum has been verified, and
+//! a file of another version is never parsed, because the meaning of a number or the result of the next step may
+//! differ.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -16,52 +16,53 @@ use crate::error::{Error, Result};
 use crate::input::open;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// No first line is longer.
+/// Longest first line, bytes.
 const MOST_OF_LINE: u64 = 256;
-/// Of a file that is not what was once written.
+/// Message for a file whose content does not match its checksum.
 const DAMAGED: &str = "is damaged: its checksum is not that of its content, but must be, as it was when it was written";
 
-/// What files of one kind begin with, and how messages call them.
+/// The header of files of one kind, and the words for them in messages.
 pub struct Seal {
     /// The first word and the space after it.
     pub magic: &'static str,
-    /// Counts the changes of what is in a file, or of what it means, within a version of the program.
+    /// Number of the format. It is increased when the content of a file or its meaning changes within a version of the
+    /// program.
     pub format: u32,
-    /// What a file holds, in a word.
+    /// The content of a file, in a word.
     pub what: &'static str,
-    /// What it is of, after that word.
+    /// The rest of that phrase, after the word.
     pub of: &'static str,
-    /// What a file must be.
+    /// The expected form of a file.
     pub form: &'static str,
 }
 
 impl Seal {
-    /// The bytes of a file. The same content is the same bytes.
+    /// The bytes of a file. Equal content gives equal bytes.
     ///
     /// # Errors
-    /// Where it cannot be put into bytes.
+    /// If the content cannot be serialised.
     pub fn written(&self, content: &impl Serialize) -> Result<Vec<u8>> {
         let refuse = |error| Error::value(self.what, "there", format!("written ({error})"));
         let content = rmp_serde::to_vec_named(content).map_err(refuse)?;
         Ok([self.first_line(&content).as_bytes(), &content].concat())
     }
 
-    /// What is in a file.
+    /// Reads the content of a file.
     ///
     /// # Errors
-    /// Where it cannot be read, is damaged or of another version, or is no such file.
+    /// If it cannot be read, is damaged, is of another version, or is not a file of this kind.
     pub fn open<T: DeserializeOwned>(&self, path: &Path) -> Result<T> {
         self.read(BufReader::new(open(path, self.form)?), path)
     }
 
-    /// True if a file is one of these, of whatever version.
+    /// True if a file is of this kind, in any version.
     pub(crate) fn is_on(&self, path: &Path) -> bool {
         let mut start = vec![0; self.magic.len()];
         let read = open(path, self.form).map(|mut file| file.read_exact(&mut start));
         read.is_ok_and(|read| read.is_ok()) && start == self.magic.as_bytes()
     }
 
-    /// The same of what is at hand; `path` is for messages.
+    /// Reads the content from a source; `path` is for messages.
     pub(crate) fn read<T: DeserializeOwned>(
         &self,
         mut file: impl BufRead,
@@ -71,7 +72,7 @@ impl Seal {
         let mut line = Vec::new();
         file.by_ref().take(MOST_OF_LINE).read_until(b'\n', &mut line).map_err(unread)?;
         let length = self.length_of_content(&line).map_err(|reason| Error::file(path, reason))?;
-        // No more than a byte too many is read, and no more room taken than there are bytes.
+        // Reads at most one byte too many, and never allocates more than the file has.
         let mut content = Vec::new();
         file.take(length.saturating_add(1)).read_to_end(&mut content).map_err(unread)?;
         if (content.len() as u64) < length {
@@ -83,7 +84,7 @@ impl Seal {
             return Err(Error::file(path, DAMAGED));
         }
         rmp_serde::from_slice(&content).map_err(|error| {
-            // Of what is not known, the list of all that is would be longer than all else.
+            // The list of all known names would be longer than the rest of the message.
             let said = error.to_string();
             let error = said.split(", expected one of").next().unwrap_or(&said);
             let Self { what, form, .. } = self;
@@ -98,7 +99,8 @@ impl Seal {
         format!("{}{} {VERSION} {length} {checksum}\n", self.magic, self.format)
     }
 
-    /// How many bytes follow a first line; or, as the rest of a sentence, why it is none of this version.
+    /// The number of bytes after a first line, or, as the rest of a sentence, the reason why it is not a line of this
+    /// version.
     fn length_of_content(&self, line: &[u8]) -> std::result::Result<u64, String> {
         let Self { magic, what, of, form, .. } = self;
         let Some(said) = line.strip_prefix(magic.as_bytes()) else {

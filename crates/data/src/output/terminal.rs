@@ -1,5 +1,4 @@
-//! What long work says to whoever started it, on streams that may be closed or full, how far it has come, and the
-//! signals that ask it to end.
+//! Messages of long work on streams that may be closed or full, its progress, and signals that ask it to end.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -11,31 +10,31 @@ use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
 use crate::error::escaped;
 
-/// Why stdout did not take what was written to it.
+/// The error of the first failed write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// Writes a line to stdout, whatever names files have.
+/// Writes a line to stdout, with control characters escaped.
 pub fn print_line(line: impl Display) {
     print_text(format_args!("{}\n", escaped(&line.to_string())));
 }
 
-/// Writes to stdout as it is.
+/// Writes text to stdout unchanged.
 pub fn print_text(text: impl Display) {
     remember(write!(std::io::stdout(), "{text}"));
 }
 
-/// Takes note of what became of something that was written to stdout elsewhere.
+/// Records the outcome of a write to stdout by other code.
 pub fn note_printed(outcome: std::io::Result<()>) {
     remember(outcome);
 }
 
-/// Writes a line to stderr, where somebody may read it, whatever names files gave to things.
+/// Writes a line to stderr, with control characters escaped.
 pub fn note_line(line: impl Display) {
-    // There is no other place to tell it.
+    // There is no other place to report a failure.
     let _ = writeln!(std::io::stderr(), "{}", escaped(&line.to_string()));
 }
 
-/// What stdout did not take, as a sentence. A reader that has seen enough and left is no loss.
+/// A sentence about a failed write to stdout, if any. A reader that closes the stream early is not a failure.
 pub fn lost_stdout() -> Option<String> {
     remember(std::io::stdout().flush());
     LOST.get().map(|reason| format!("stdout did not take all that was written to it ({reason})"))
@@ -54,21 +53,21 @@ pub fn counted(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Progress of one piece of work on stderr.
+/// A progress bar on stderr.
 #[derive(Clone, Debug)]
 pub struct Progress {
     bar: ProgressBar,
 }
 
 impl Progress {
-    /// Starts work of `length` units of any kind. `what` stands in front of the bar.
+    /// Starts work of `length` units of any kind. `what` is shown in front of the bar.
     pub fn new(what: &str, length: u64) -> Self {
         let bar = if std::io::stderr().is_terminal() {
             let template = "{prefix} {wide_bar} {percent:>3} %  {left}";
             let style = ProgressStyle::with_template(template)
                 .unwrap_or_else(|_| ProgressStyle::default_bar())
                 .with_key("left", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-                    // What cannot be written on a terminal is no reason to end.
+                    // A failure to write to a terminal is no reason to stop.
                     let _ = out.write_str(&left(state.pos(), state.eta()));
                 });
             let bar = ProgressBar::new(length).with_style(style).with_prefix(escaped(what));
@@ -80,33 +79,33 @@ impl Progress {
         Self { bar }
     }
 
-    /// Counts units done.
+    /// Adds completed units.
     pub fn advance(&self, units: u64) {
         self.bar.inc(units);
     }
 
-    /// Sets the units done.
+    /// Sets the number of completed units.
     pub fn set(&self, units: u64) {
         self.bar.set_position(units);
     }
 
-    /// True if there is a terminal that shows a bar.
+    /// True if a terminal shows the bar.
     pub fn is_drawn(&self) -> bool {
         !self.bar.is_hidden()
     }
 
-    /// Says something in a line of its own.
+    /// Writes a line above the bar.
     pub fn say(&self, line: &str) {
         self.bar.suspend(|| note_line(line));
     }
 
-    /// Ends the work.
+    /// Ends the work and removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// How long work will take yet, in words; nothing where no part is done, from which one could tell.
+/// Estimated remaining time, in words; empty if nothing is done yet.
 fn left(done: u64, estimate: Duration) -> String {
     match done {
         0 => String::new(),
@@ -115,17 +114,17 @@ fn left(done: u64, estimate: Duration) -> String {
     }
 }
 
-/// More steps than this are told of before they begin: they take minutes of the smallest scene.
+/// Number of steps above which a warning is written before they begin. Even for the smallest scene they take minutes.
 const MANY_STEPS: u64 = 100_000_000;
 
-/// Says on stderr how many steps were asked for, where they are very many.
+/// Warns on stderr if a very large number of steps was requested.
 pub fn warn_of_steps(steps: u64) {
     if steps > MANY_STEPS {
         note_line(format_args!("slump: this asks for {steps} steps, which take long"));
     }
 }
 
-/// The first signal that came; 0 where none did.
+/// The first signal that arrived; 0 if none.
 static CAUGHT: AtomicI32 = AtomicI32::new(0);
 
 /// A signal that asks the program to end.
@@ -133,12 +132,12 @@ static CAUGHT: AtomicI32 = AtomicI32::new(0);
 pub struct Signal(u8);
 
 impl Signal {
-    /// What a shell shows of a program that the signal ended.
+    /// The exit code that a shell shows if the signal had ended the program.
     pub fn exit_code(self) -> u8 {
         128 + self.0
     }
 
-    /// Its name.
+    /// The name of the signal.
     pub fn name(self) -> &'static str {
         match self.0 {
             1 => "SIGHUP",
@@ -148,13 +147,13 @@ impl Signal {
     }
 }
 
-/// The first signal that came since [`heed_signals`].
+/// The first signal that arrived since [`heed_signals`].
 pub fn caught_signal() -> Option<Signal> {
     u8::try_from(CAUGHT.load(Ordering::Relaxed)).ok().filter(|&number| number > 0).map(Signal)
 }
 
-/// From now on the first INT, TERM or HUP is only noted; the same once more ends the program at once.
-/// What was ignored when the program started, as under `nohup`, stays so.
+/// From now on the first INT, TERM or HUP is only recorded; a second one ends the program at once. Signals that were
+/// ignored when the program started, as under `nohup`, remain ignored.
 #[cfg(unix)]
 pub fn heed_signals() {
     extern "C" fn note(signal: libc::c_int) {
@@ -162,8 +161,8 @@ pub fn heed_signals() {
     }
     let note: extern "C" fn(libc::c_int) = note;
     for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
-        // SAFETY: all-zero is a valid value of this plain structure, both pointers are to live ones or
-        // null, and the handler does nothing but one operation on an atomic.
+        // SAFETY: all-zero is a valid value of this plain structure, both pointers are valid or null, and the handler
+        // only performs one operation on an atomic.
         unsafe {
             let mut before: libc::sigaction = std::mem::zeroed();
             let known = libc::sigaction(signal, std::ptr::null(), &raw mut before) == 0;
@@ -178,18 +177,18 @@ pub fn heed_signals() {
     }
 }
 
-/// From now on a file that grows beyond what the system allows is an error of that write, and not the end.
+/// From now on a file that exceeds the system's size limit makes its write fail instead of ending the program.
 #[cfg(unix)]
 pub fn ignore_file_size_signal() {
     // SAFETY: no handler is installed, and none runs.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
 }
 
-/// No such signal is here.
+/// There is no such signal on this system.
 #[cfg(not(unix))]
 pub fn ignore_file_size_signal() {}
 
-/// From now on the first Ctrl-C, Ctrl-Break or closed console is only noted; the same once more ends the program at once.
+/// From now on the first Ctrl-C, Ctrl-Break or closed console is only recorded; a second one ends the program at once.
 #[cfg(windows)]
 pub fn heed_signals() {
     use windows_sys::Win32::System::Console::{
@@ -204,11 +203,11 @@ pub fn heed_signals() {
         };
         CAUGHT.compare_exchange(0, signal, Ordering::Relaxed, Ordering::Relaxed).is_ok().into()
     }
-    // SAFETY: the handler does nothing but one operation on an atomic.
+    // SAFETY: the handler only performs one operation on an atomic.
     unsafe { SetConsoleCtrlHandler(Some(note), 1) };
 }
 
-/// No signal reaches a page.
+/// The browser version receives no signals.
 #[cfg(not(any(unix, windows)))]
 pub fn heed_signals() {}
 

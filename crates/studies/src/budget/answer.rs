@@ -1,4 +1,4 @@
-//! What a budget comes to: a row a cause, the limit of small time steps, and a verdict.
+//! The result of a budget: one row per cause, the limit of small time steps, and a verdict.
 
 use super::causes::{Cause, Variant};
 use super::collect::{BudgetEnd, Runs};
@@ -7,7 +7,8 @@ use super::rows::{CauseRow, Design, QuantityBudget, Trust};
 use super::words::paragraph;
 use crate::statistics::Mean;
 
-/// Contrasts of successive halvings that are this part of the width count as none.
+/// Slack in the test for a limit, as a fraction of the requested width: contrasts of successive halvings within it
+/// count as zero.
 const SLACK: f64 = 0.25;
 pub(super) fn budget_of(
     runs: &Runs,
@@ -86,7 +87,7 @@ fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseR
     }
 }
 
-/// Series of Δt/2, Δt/4 and Δt/8, where all were run.
+/// The series of Δt/2, Δt/4 and Δt/8, if all were run.
 fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize; 3]> {
     let all = design.variants.iter().zip(1..);
     let of_steps = all.filter(|(variant, series)| {
@@ -97,11 +98,12 @@ fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize;
     of_steps.map(|(_, series)| series).collect::<Vec<_>>().try_into().ok()
 }
 
-/// What Δt → 0 adds, by Richardson's extrapolation.
+/// The effect of Δt → 0, by Richardson's extrapolation.
 ///
-/// With an error a Δt^p, the changes q₁ = Q(Δt/2) − Q(Δt), q₂ and q₃ of three halvings fall by 2^p each, and what is still
-/// to come after the third is q₃/(2^p − 1). For p = 1 and 2 in turn it is held that q₂ − q₁/2^p and q₃ − q₂/2^p may be 0; where
-/// neither may, the value does not settle so, and no limit is given.
+/// With an error a Δt^p, the changes q₁ = Q(Δt/2) − Q(Δt), q₂ and q₃ of three halvings decrease by a factor 2^p each,
+/// and the remaining change after the third is q₃/(2^p − 1). The function tests for p = 1, then for p = 2, whether q₂ −
+/// q₁/2^p and q₃ − q₂/2^p are compatible with 0. If neither p passes, the value does not converge in this way, and no
+/// limit is given.
 fn limit(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<Mean> {
     let [half, quarter, eighth] = halvings(runs, design, quantity)?;
     let slack = SLACK * runs.within[quantity];
@@ -132,8 +134,8 @@ mod tests {
     use super::*;
     use crate::scene::{NewPile, built_in};
 
-    /// A budget of made-up runs of a cohesive pile: `of` is what a variant adds to the value at Δt → 0, and runs scatter by
-    /// `scatter` beside what starts have in common.
+    /// A budget of synthetic runs of a cohesive pile. `of` is the effect of a variant on the value at Δt → 0, and
+    /// `scatter` is the scatter of runs in addition to the common effect of their initial state.
     fn made_up(
         seed: u64,
         scatter: f64,
@@ -144,7 +146,7 @@ mod tests {
         made_up_at(seed, scatter, limits, of, &as_expected)
     }
 
-    /// The same with `cost_of` a run of each variant, s.
+    /// Like `made_up`, where a run of each variant takes `cost_of`, s.
     fn made_up_at(
         seed: u64,
         scatter: f64,
@@ -156,7 +158,7 @@ mod tests {
         scene.parameters.bond = 20.0;
         let variants = variants(&scene, Some(&NewPile::default()), true);
         let run = |SeriesRun { series, start }: SeriesRun| {
-            // The sum of twelve uniform numbers is as good as normal here.
+            // The sum of twelve uniform numbers is sufficiently normal here.
             let normal = |number: u64| {
                 let mut random = Pcg64::seed_from_u64(number);
                 (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>()
@@ -198,7 +200,7 @@ mod tests {
                 || budget.limit_adds.is_some_and(is_seen)
         };
         let share = share(sees_any);
-        // Of 1,000 budgets, 5 % are 50 ± 7.
+        // With 1,000 budgets, 5 % would be 50 ± 7.
         assert!(share <= 0.07, "{share} of budgets see an effect where there is none");
     }
 
@@ -267,7 +269,7 @@ mod tests {
         let [limit, ..] = budget.limit_adds.expect("a limit");
         assert!((limit + 0.1).abs() < 1e-4, "{limit}");
         assert!(budget.answer.contains("Δt ≤ 2.5e-4 s, 4.0 times the cost"), "{}", budget.answer);
-        // What goes on changing by as much at each halving has no limit.
+        // A value that changes by the same amount at each halving has no limit.
         let logarithmic = |variant: Option<&Variant>| {
             0.05 * variant.map_or(1e-3, |one| one.settings.parameters.time_step_secs).ln()
         };
@@ -294,7 +296,7 @@ mod tests {
         assert_eq!(budget.trust, Trust::NotKnownYet);
     }
 
-    /// Made-up runs cost what is expected of them, but for those under another law: ten times that.
+    /// Synthetic runs cost what the budget expects, except runs under another law, which cost ten times as much.
     #[test]
     fn a_law_that_is_dearer_than_expected_does_not_take_the_time_of_all_else() {
         let is_dear = |variant: &Variant| variant.cause == Cause::ContactLaw;

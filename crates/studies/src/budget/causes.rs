@@ -1,4 +1,4 @@
-//! What a number may owe itself to, in a scene: which of it can matter there, and how it is tried.
+//! Possible causes of an effect on a result: the causes that can matter in a scene, and the change that tests each.
 
 use crate::fracture_work::{fracture_work, with_fracture_work};
 use crate::scene::{Deposition, NewPile, Scene};
@@ -6,15 +6,15 @@ use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::FrictionCone;
 
-/// Whose share it is.
+/// The part of a budget that a cause belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Share {
-    /// Of the grains: how many, and how they were put down.
+    /// Grains: their number and initial state.
     Grains,
-    /// Of the laws that contacts obey.
+    /// Laws that contacts obey.
     Law,
-    /// Of the method: the time step, what steps leave unsolved, and where solves start.
+    /// Method: time step, unsolved steps, and initial guesses of solves.
     Method,
 }
 
@@ -43,7 +43,7 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    /// The share, the name, and the subject of sentences, in which `{}` is the change.
+    /// The part, the name, and the subject of sentences, in which `{}` stands for the change.
     const fn row(self) -> (Share, &'static str, &'static str) {
         match self {
             Self::TimeStep => (Share::Method, "time step", "the {}"),
@@ -76,31 +76,32 @@ impl Cause {
     }
 }
 
-/// The scene with one thing changed.
+/// The scene with one change.
 #[derive(Clone, Debug)]
 pub(crate) struct Variant {
     pub cause: Cause,
-    /// What it is changed to, in words.
+    /// The changed value, in words.
     pub label: String,
     pub settings: Settings,
-    /// Other grains, where these are what is changed.
+    /// Other grains, if the grains are changed.
     pub pile: Option<NewPile>,
-    /// What a run of it may cost, in runs of the scene as it is: until it is measured.
+    /// Expected cost of a run, relative to the unchanged scene, until it is measured.
     pub cost: f64,
 }
 
-/// Parts that Δt is divided by.
+/// Divisors of Δt.
 pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
-/// How much better than by default steps are solved, to see what they leave unsolved: some steps cannot be solved to 1e-7 √(g d)
-/// because of rounding.
+/// Factor by which steps are solved more tightly than by default, to measure the effect of unsolved steps. Because of
+/// rounding, some steps cannot be solved to 1e-7 √(g d).
 const TIGHTER: f64 = 1e-2;
-/// Another touch tolerance, in mean diameters: more than what a step leaves unsolved, less than grains are rough.
+/// An alternative touch tolerance, in mean diameters: larger than the residual gaps of a step, smaller than the
+/// roughness of grains.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Below about this many g·Δt restitution stands for no bounce that anyone could see.
+/// An alternative restitution threshold, in g·Δt. Bounces slower than about this are not visible.
 const THRESHOLD: f64 = 2.0;
 
-/// All that can matter to a scene, and that it takes. `pile` is what its grains are made of, where they are made;
-/// `resizes` is true where their number can be changed.
+/// All variants that can matter to a scene and that it accepts. `pile` describes its grains, if they are generated;
+/// `resizes` is true if their number can be changed.
 pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
     let base = scene.settings();
     let (parameters, solver) = (base.parameters, base.solver);
@@ -108,7 +109,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     let mut add = |cause, label: &str, cost, settings: Settings| {
         let mut changed = scene.clone();
         changed.set_settings(settings);
-        // A change that a scene does not take is not a cause.
+        // A change that the scene refuses is not a cause.
         if settings != base && changed.simulation().is_ok() {
             all.push(Variant { cause, label: label.to_owned(), settings, pile: None, cost });
         }
@@ -123,7 +124,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
         let settings = tighter(base, is_driven);
         let label = format!("steps solved by {}", settings.solver.method);
         add(Cause::Unsolved, &label, 4.0, settings);
-        // A step of a flowing pile has several solutions, and the start of a solve decides which one it finds.
+        // A step of a flowing pile has several solutions; the initial guess decides which one a solve finds.
         let label = if solver.warm_start { "cold starts" } else { "warm starts" };
         add(Cause::Start, label, 4.0, by(&|it| it.solver.warm_start ^= true));
     }
@@ -192,11 +193,11 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     all
 }
 
-/// The same steps solved so well that next to nothing is left of them.
+/// The same settings, with steps solved so tightly that their errors are negligible.
 fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     let solver = settings.solver;
     let method = match solver.friction_model {
-        // Newton's method does not take walls that a force drives.
+        // Newton's method does not support walls that a force drives.
         FrictionModel::Coulomb if is_driven => Method::Nncg,
         FrictionModel::Coulomb => Method::Newton,
         _ => Method::InteriorPoint,
@@ -211,8 +212,8 @@ fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     settings
 }
 
-/// Another contact law, under which it takes as much work to break a bond as under the scene's own; where that knows no
-/// such work, as under `range` with the debonding distance that the scene has.
+/// Settings with another contact law under which breaking a bond takes the same work as under the scene's own. If the
+/// scene's law does not define this work, the settings are those of `range` with the scene's debonding distance.
 fn at_equal_work(scene: &Scene, stepper: Stepper) -> Settings {
     let settings = Settings { stepper, ..scene.settings() }.with_only_what_is_taken();
     if !(scene.physics.cohesion && settings.parameters.bond > 0.0) {
@@ -226,7 +227,7 @@ fn at_equal_work(scene: &Scene, stepper: Stepper) -> Settings {
     joules.map_or(settings, |joules| with_fracture_work(scene, settings, joules))
 }
 
-/// A number as people write it.
+/// A number in a short form for readers.
 pub(crate) fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
     if rounded != 0.0 && !(1e-2..1e4).contains(&rounded.abs()) {
@@ -277,7 +278,7 @@ mod tests {
         assert_eq!(causes(&pile, None), left);
         let drum = built_in("drum").unwrap();
         assert!(!causes(&drum, None).contains(&Cause::NumberOfGrains));
-        // Walls that a force drives are moved by few steppers.
+        // Few steppers support walls that a force drives.
         let biaxial = variants(&built_in("biaxial").unwrap(), None, false);
         assert!(biaxial.iter().all(|variant| variant.label != "avbd"));
         for scene in crate::scene::SCENES {

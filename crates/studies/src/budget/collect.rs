@@ -1,5 +1,6 @@
-//! Which runs a budget takes: each variant from a few starts, the cheapest first, then more starts where an interval is
-//! the widest, until all are as narrow as asked for or the time is spent.
+//! The order of a budget's runs: first every variant from a few initial states, the cheapest first; then more initial
+//! states for the variant with the widest interval, until all intervals are as narrow as requested or the time is
+//! spent.
 
 use std::ops::ControlFlow;
 
@@ -10,83 +11,85 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::statistics::{Mean, mean, mean_with};
 
-/// Starts that a series has at least. A series ends when its interval is narrow, so that one whose few starts lie together by
-/// chance ends too early: with 4, 7.7 % of 3,000 made-up budgets see an effect though nothing has one, with 6, 5.4 %.
+/// Least number of initial states of a series. A series ends when its interval is narrow, so one whose few values are
+/// close together by chance ends too early. With 4 initial states, 7.7 % of 3,000 synthetic budgets without any effect
+/// report one; with 6, 5.4 %.
 const FIRST: usize = 6;
-/// Share of budgets in which an interval may not hold the true value, of all that a budget has.
+/// Fraction of budgets in which at least one interval may miss the true value.
 pub(super) const OUTSIDE: f64 = 0.05;
-/// Where no other width is asked for: this part of the value.
+/// Default width, as a fraction of the value.
 const PART: f64 = 0.1;
 
-/// A run of series `series`, 0 for the scene as it is, from start `start`, counted from 0.
+/// A run of series number `series` (0 is the unchanged scene) from initial state number `start`, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SeriesRun {
     pub series: usize,
     pub start: usize,
 }
 
-/// A run and how long it took together with its start, s.
+/// A run and the time that it took, including its initial state, s.
 #[derive(Clone, Debug)]
 pub(super) struct Ran {
     pub values: RunValues,
     pub secs: f64,
-    /// True where a part has run it, whose time is not this budget's.
+    /// True if another part has run it, so that its time does not count for this budget.
     pub is_free: bool,
 }
 
-/// How far a budget goes.
+/// Limits of a budget.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Core seconds.
     pub cost_secs: f64,
     /// Half the width of every interval, in the quantity's unit.
     pub within: Option<f64>,
-    /// Parts that there are, of which this is one. Together they have so many times its starts.
+    /// Number of parts, of which this is one. Together they have this many times the initial states of one part.
     pub parts: usize,
-    /// True where a bar on stderr shows how far it is.
+    /// True to show progress in a bar on stderr.
     pub shows_progress: bool,
 }
 
-/// Why no more was computed.
+/// The reason for the end of a budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum BudgetEnd {
-    /// Every interval is as narrow as asked for.
+    /// Every interval is as narrow as requested.
     Within,
     /// The time is spent.
     Cost,
-    /// Whoever watches wanted no more.
+    /// The observer stopped it.
     Stopped,
-    /// Runs of the scene as it is came to no number.
+    /// Runs of the unchanged scene gave no value.
     Failed,
 }
 
 /// The runs so far.
 pub(super) struct Runs {
-    /// By series, then by start.
+    /// Indexed by series, then by initial state.
     pub all: Vec<Vec<Ran>>,
     pub quantities: usize,
-    /// Half the width that intervals are to have, by quantity.
+    /// Requested half-width of the intervals, by quantity.
     pub within: Vec<f64>,
-    /// What a run of each series may cost before one was measured, in runs of the first.
+    /// Expected cost of a run of each series before one was measured, relative to the first series.
     costs: Vec<f64>,
 }
 
 impl Runs {
-    /// `costs` are those of all series, the first of which is the scene as it is.
+    /// `costs` are the expected costs of all series, the first of which is the unchanged scene.
     fn new(costs: Vec<f64>, quantities: usize) -> Self {
         let all = costs.iter().map(|_| Vec::new()).collect();
         Self { all, quantities, within: Vec::new(), costs }
     }
 
-    /// Share of samples in which a single interval holds the true value, for all of them to hold it together in all but
-    /// [`OUTSIDE`] (Bonferroni).
+    /// Confidence of a single interval. It is high enough that all intervals together contain the true values in all
+    /// samples except [`OUTSIDE`] (Bonferroni).
     pub(super) fn confidence(&self) -> f64 {
-        // Beside every series there is the value at Δt → 0.
+        // In addition to one interval per series there is the interval at Δt → 0.
         1.0 - OUTSIDE / ((self.all.len() + 1) * self.quantities) as f64
     }
 
-    /// The values of a quantity over the starts at which some series all have one: `of` makes one number of theirs.
+    /// Mean over the initial states for which all of `series` have a value of the quantity; `of` combines these values
+    /// to one number.
     pub(super) fn over_starts(
         &self,
         series: &[usize],
@@ -108,7 +111,7 @@ impl Runs {
         values.values[quantity].filter(|_| values.failure.is_none())
     }
 
-    /// The quantity of the scene as it is, or what a series adds to it.
+    /// The quantity in the unchanged scene, or the effect of a series on it.
     pub(super) fn interval(&self, series: usize, quantity: usize) -> Mean {
         if series == 0 {
             self.over_starts(&[0], quantity, |values| values[0])
@@ -117,7 +120,7 @@ impl Runs {
         }
     }
 
-    /// Why a series comes to no number, if it does: in how many of its runs, and the first reason.
+    /// The reason why a series gives no value, if it fails: the number of failed runs, and the first reason.
     pub(super) fn failure(&self, series: usize, quantity: usize) -> Option<String> {
         let runs = &self.all[series];
         let failed =
@@ -128,7 +131,7 @@ impl Runs {
         Some(format!("{count} of {} runs came to nothing: {reason}", runs.len()))
     }
 
-    /// What runs of a series cost, in those of the scene as it is from the same starts.
+    /// Cost of a series, relative to the unchanged scene with the same initial states.
     pub(super) fn cost_ratio(&self, series: usize) -> f64 {
         let shared = self.all[series].len().min(self.all[0].len());
         let secs =
@@ -136,7 +139,7 @@ impl Runs {
         secs(series) / secs(0)
     }
 
-    /// True where a series has as many runs as one needs to be told of.
+    /// True if a series has enough runs to be reported.
     pub(super) fn is_begun(&self, series: usize) -> bool {
         self.all[series].len() >= FIRST
     }
@@ -157,7 +160,7 @@ impl Runs {
         self.all.iter().flatten().filter(|ran| !ran.is_free).map(|ran| ran.secs).sum()
     }
 
-    /// How many times as wide as asked for the widest interval of a series is; 0 where it has to be no narrower.
+    /// Ratio of the widest interval of a series to the requested width; 0 if it need not become narrower.
     pub(super) fn excess(&self, series: usize) -> f64 {
         let of = |quantity: usize| {
             if [0, series].iter().any(|&one| self.failure(one, quantity).is_some()) {
@@ -171,7 +174,7 @@ impl Runs {
     }
 }
 
-/// Takes runs until all intervals are narrow, the time is spent, or `watch` breaks off.
+/// Computes runs until all intervals are narrow, the time is spent, or `watch` breaks.
 pub(super) fn collect(
     costs: Vec<f64>,
     quantities: usize,
@@ -191,7 +194,7 @@ pub(super) fn collect(
     take(&mut runs, first(0).collect(), limits.shows_progress, run)?;
     runs.within = (0..quantities)
         .map(|quantity| limits.within.unwrap_or_else(|| width(&runs, quantity)))
-        // Intervals narrow with the root of the number of starts.
+        // The width of an interval decreases with the square root of the number of initial states.
         .map(|within| within * (limits.parts as f64).sqrt())
         .collect();
     if (0..quantities).all(|quantity| runs.failure(0, quantity).is_some()) {
@@ -213,12 +216,12 @@ pub(super) fn collect(
     }
 }
 
-/// The first starts of a series.
+/// The runs of a series from its first initial states.
 fn first(series: usize) -> impl Iterator<Item = SeriesRun> {
     (0..FIRST).map(move |start| SeriesRun { series, start })
 }
 
-/// The width to come to where none is asked for, rounded to a digit.
+/// The default width, rounded to one digit.
 fn width(runs: &Runs, quantity: usize) -> f64 {
     let values: Vec<f64> = (0..FIRST).filter_map(|start| runs.value(0, start, quantity)).collect();
     let mean = mean(&values);
@@ -227,8 +230,9 @@ fn width(runs: &Runs, quantity: usize) -> f64 {
     format!("{rough:.0e}").parse().unwrap_or(rough)
 }
 
-/// First starts of series that fit into what is left of the time, the cheapest first. What a run costs under a dear law is
-/// known to a factor of ten before one was measured, so that a series has one run at first, and the others if they fit.
+/// First runs of the series that fit into the remaining time, the cheapest first. Before one run was measured, the cost
+/// under an expensive law is only known to a factor of ten. A series therefore begins with one run, and gets the others
+/// later if they fit.
 fn begun(
     runs: &Runs,
     left_secs: f64,
@@ -249,7 +253,8 @@ fn begun(
     Ok(jobs)
 }
 
-/// More starts for the series with the widest interval that is affordable; none where all are narrow, or none is.
+/// More runs for the series with the widest interval that is affordable; none if all intervals are narrow, or if no
+/// series is affordable.
 fn widened(
     runs: &Runs,
     left_secs: f64,
@@ -267,7 +272,8 @@ fn widened(
     wide.sort_by(|one, other| other.0.total_cmp(&one.0));
     for (excess, series) in wide {
         let count = runs.all[series].len();
-        // Intervals narrow with the root of the number of starts; at most as many again, as scatter is not known well.
+        // The width decreases with the square root of the number. The number is at most doubled, because the scatter is
+        // not known well.
         let needed = (count as f64 * (excess * excess - 1.0)).ceil().clamp(1.0, count as f64);
         let missing = |one: usize, to: usize| {
             (runs.all[one].len()..to).map(move |start| SeriesRun { series: one, start })
@@ -286,7 +292,7 @@ fn widened(
     Ok(Err(BudgetEnd::Cost))
 }
 
-/// Computes runs on all cores, the longest first, and puts each in its place.
+/// Computes runs on all cores, the longest first, and stores their results.
 fn take(
     runs: &mut Runs,
     mut jobs: Vec<SeriesRun>,
@@ -321,7 +327,7 @@ mod tests {
 
     #[test]
     fn a_quantity_that_the_scene_does_not_have_takes_no_time_from_one_that_it_has() {
-        // The second quantity has a value in the variant alone, as the energy of bonds has under range.
+        // Only the variant has a value of the second quantity, like the energy of bonds under range.
         let run = |SeriesRun { series, start }: SeriesRun| {
             let only_of_the_variant = (series > 0).then_some(1.0);
             let values = vec![Some(0.01 * (start % 3) as f64), only_of_the_variant];

@@ -1,7 +1,8 @@
-//! An error budget: how much of a number the grains make, how much the law of their contacts, and how much the method.
+//! Error budgets: how much of a result is due to the grains, to the contact law and to the method.
 //!
-//! Each thing that the number may owe itself to is changed alone, from the same starts as the scene as it is, so that what
-//! it adds is a mean of paired differences with its interval. All intervals of a budget hold together.
+//! Each possible cause is changed alone, from the same initial states as the unchanged scene. Its effect is a mean of
+//! paired differences with an interval. The intervals of a budget are simultaneous: together they contain the true
+//! values.
 
 mod answer;
 mod causes;
@@ -32,23 +33,23 @@ use crate::output::{check_writable, note_line, print_line, print_text, remove_dr
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// What a budget is asked for.
+/// Options of a budget.
 #[derive(Clone, Debug)]
 pub struct BudgetOptions {
     /// The scene.
     pub config: Config,
-    /// Columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`, `total(…)` of them; the slump where
-    /// there are none.
+    /// Columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`, `total(…)` of them. Empty for
+    /// the slump.
     pub quantities: Vec<String>,
-    /// Begin of the window, s; 0 where there is none.
+    /// Begin of the window, s; `None` for 0.
     pub from_secs: Option<f64>,
-    /// Its end, s; the scene's where there is none.
+    /// End of the window, s; `None` for the scene's end.
     pub to_secs: Option<f64>,
-    /// Half the width of every interval, in the quantity's unit; a tenth of the value where there is none.
+    /// Half the width of every interval, in the quantity's unit; `None` for a tenth of the value.
     pub within: Option<f64>,
-    /// Time to take on all cores, s.
+    /// Computing time over all cores, s.
     pub cost_secs: f64,
-    /// The part of the starts to run, for another machine; all of them where there is none.
+    /// The part of the initial states to run on this machine; `None` for all of them.
     pub shard: Option<Shard>,
 }
 
@@ -57,15 +58,15 @@ pub struct BudgetOptions {
 pub struct ErrorBudget {
     program: &'static str,
     version: &'static str,
-    /// What makes it again, but for the time that it may take.
+    /// The command that repeats the budget, without its time limit.
     command: String,
     scene: String,
-    /// How it is stepped, in a few words.
+    /// Stepper and solver, in a few words.
     stepped: String,
     from_secs: f64,
     to_secs: f64,
     ended: BudgetEnd,
-    /// All that the scene says, grains left out.
+    /// All values of the scene except its grains.
     config: Config,
     quantities: Vec<QuantityBudget>,
 }
@@ -76,25 +77,25 @@ impl ErrorBudget {
         self.quantities.first().map(|one| (one.trust, one.answer.clone()))
     }
 
-    /// All of it, as `budget.json` has it.
+    /// The budget in the form of `budget.json`.
     ///
     /// # Errors
-    /// Where it cannot be said in JSON.
+    /// If it cannot be written as JSON.
     pub fn to_json(&self) -> Result<String> {
         serde_json::to_string_pretty(self).map_err(|error| Error::file("budget.json", error))
     }
 }
 
-/// Its runs as they come.
+/// Name of the journal of the budget's runs.
 const JOURNAL: &str = "budget";
-/// The quantity of what asks for none.
+/// The default quantity.
 const QUANTITY: &str = "slump";
 
-/// Makes an error budget in `folder`: `report.md`, a picture, `budget.csv` and `budget.json`. The same call goes on where
-/// one was stopped. What parts of it have run there costs it nothing; a part leaves its runs alone.
+/// Computes an error budget in `folder`: `report.md`, a picture, `budget.csv` and `budget.json`. The same call resumes
+/// a budget that was stopped. Runs that its parts have already computed there cost no time. A part only adds its runs.
 ///
 /// # Errors
-/// Names the quantity, the time or the setting that is not allowed, or the folder that cannot be written; and where a pile
+/// Names the quantity, time or setting that is not allowed, or the folder that cannot be written. Also fails if a pile
 /// does not come to rest.
 pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     let go_on = |_: &ErrorBudget| ControlFlow::Continue(());
@@ -113,8 +114,8 @@ pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     Ok(budget)
 }
 
-/// The same without files but those that it goes on from; initial states of piles lie in `states`. `watch` has each stage
-/// of it, and ends it by breaking.
+/// Like [`budget`], but only writes the files from which it can resume. Initial states of piles are stored in `states`.
+/// `watch` is called with the budget after each stage and stops it by breaking.
 ///
 /// # Errors
 /// As [`budget`].
@@ -162,7 +163,7 @@ fn made_showing(
         Some(_) if options.shard.is_none() => Some(ran(&key(None, None)?, &|| starts.itself())?),
         _ => None,
     };
-    // Parts deal starts out among themselves, so that they need not know of each other.
+    // Parts divide the initial states among themselves, so they need not communicate.
     let (part, parts) = options.shard.map_or((1, 1), |shard| (shard.index, shard.count));
     let of_job = |SeriesRun { series, start }: SeriesRun| {
         let variant = series.checked_sub(1).map(|one| &variants[one]);
@@ -212,20 +213,20 @@ fn made_showing(
     Ok(of(&runs, ended))
 }
 
-/// A runner that knows the runs of all parts that lie in a folder, and the keys of those that are not its own.
+/// A runner that knows the runs of all parts in a folder, and the keys of the runs of other parts.
 fn runner_of(shard: Option<Shard>, folder: &Path) -> Result<(Runner<RunValues>, HashSet<String>)> {
     let name = shard.map_or_else(|| JOURNAL.to_owned(), |shard| shard.journal(JOURNAL));
     let journal = Journal::open(folder, &name)?;
     let own = journal::path_of(folder, &name);
     let (mut finished, mut others) = (HashMap::new(), HashSet::new());
     let mut paths = journal::journals(&[folder.to_owned()])?;
-    // What else lies there is of no budget.
+    // Other journals in the folder do not belong to a budget.
     let is_of_a_part = |path: &PathBuf| {
         let name = path.file_stem().and_then(|name| name.to_str());
         name.is_some_and(|name| name.starts_with(JOURNAL))
     };
     paths.retain(is_of_a_part);
-    // Its own last: a run that two of them have is its own.
+    // The own journal is last: a run in two journals counts as its own.
     paths.sort_by_key(|path| *path == own);
     for path in paths {
         for case in journal::read::<FinishedCase<RunValues>>(&path)? {

@@ -1,4 +1,4 @@
-//! What an error budget is asked of: a column of the tables `steps` and `measures`, at a time or over a window.
+//! The quantity of an error budget: a column of the tables `steps` and `measures`, at one time or over a window.
 
 use crate::column_spec::{CellValue, ColumnSpec};
 use crate::data::STEP_COLUMNS;
@@ -6,15 +6,16 @@ use crate::error::{Error, Result};
 use crate::granular::PileMeasures;
 use crate::sim::{Observables, Simulation};
 
-/// Moments of a window at which the table `measures` is looked at: a moment takes as long as several steps.
+/// Number of moments in a window at which the table `measures` is evaluated. One evaluation takes as long as several
+/// steps.
 const MOMENTS: u64 = 100;
 
-/// A number of the values of a window.
+/// A statistic of the values in a window.
 type Statistic = fn(&Found) -> f64;
 
 const STATISTICS: [(&str, Statistic); 4] = [
     ("mean", |found| found.sum / found.count as f64),
-    // A comparison with NaN is false in either order.
+    // Comparisons with NaN are false in either order.
     ("min", |found| if found.sum.is_nan() { f64::NAN } else { found.least }),
     ("max", |found| if found.sum.is_nan() { f64::NAN } else { found.most }),
     ("total", |found| found.sum),
@@ -26,14 +27,14 @@ enum RecordedColumn {
     OfMeasures(&'static ColumnSpec<PileMeasures>),
 }
 
-/// A number that a run comes to.
+/// A numeric result of a run.
 #[derive(Clone)]
 pub(crate) struct BudgetQuantity {
-    /// As it was asked for.
+    /// Name as the user gave it.
     pub name: String,
-    /// Its unit; empty where it has none.
+    /// Unit; empty for a dimensionless quantity.
     pub unit: &'static str,
-    /// None for the last value.
+    /// `None` for the last value.
     statistic: Option<Statistic>,
     column: RecordedColumn,
 }
@@ -49,7 +50,10 @@ impl std::str::FromStr for BudgetQuantity {
         let (statistic, column) = of.unwrap_or((None, text));
         let (column, unit) = column_of(column).ok_or_else(|| {
             let names = names().collect::<Vec<_>>().join(", ");
-            let allowed = format!("mean(x), min(x), max(x), total(x), or x itself for its last value, where x is one of {names}");
+            let allowed = format!(
+                "mean(x), min(x), max(x), total(x), or x itself for its last value, where x is \
+                one of {names}"
+            );
             Error::value("quantity", text, allowed)
         })?;
         let unit = if unit == "1" { "" } else { unit };
@@ -57,7 +61,7 @@ impl std::str::FromStr for BudgetQuantity {
     }
 }
 
-/// Columns that tell of the run's clock, and words.
+/// True for numeric columns, except those of the run's clock.
 fn is_number<Row>(column: &ColumnSpec<Row>) -> bool {
     !matches!(column.name, "step" | "time" | "time_step")
         && !matches!(column.value, CellValue::Word(..) | CellValue::Name(_))
@@ -79,14 +83,14 @@ fn column_of(name: &str) -> Option<(RecordedColumn, &'static str)> {
     Some((RecordedColumn::OfMeasures(column), column.unit))
 }
 
-/// A part of a run, by simulated time.
+/// A part of a run, in simulated time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
     pub from_secs: f64,
     pub to_secs: f64,
 }
 
-/// What quantities come to while a run goes on.
+/// Evaluates quantities during a run.
 pub(super) struct QuantityWatch<'a> {
     quantities: &'a [BudgetQuantity],
     first: u64,
@@ -117,7 +121,7 @@ impl<'a> QuantityWatch<'a> {
         Self { quantities, first, last, stride, found: vec![none; quantities.len()] }
     }
 
-    /// Steps to take from the start on.
+    /// Number of steps to take from the start.
     pub(super) fn steps(&self) -> u64 {
         self.last
     }
@@ -145,14 +149,14 @@ impl<'a> QuantityWatch<'a> {
             let value = value.unwrap_or(f64::NAN);
             found.sum += value;
             found.count += 1;
-            // What is not a number stays none.
+            // NaN remains NaN.
             found.least = if value >= found.least { found.least } else { value };
             found.most = if value <= found.most { found.most } else { value };
             found.latest = value;
         }
     }
 
-    /// The quantities' values; what is not finite is none.
+    /// The values of the quantities, which may be NaN or infinite.
     pub(super) fn values(&self) -> Vec<f64> {
         let of = |(quantity, found): (&BudgetQuantity, &Found)| {
             quantity.statistic.map_or(found.latest, |statistic| statistic(found))

@@ -1,4 +1,4 @@
-//! What a budget leaves in its folder: the answer in words, a picture, and the table as CSV and JSON.
+//! The files of a budget: the answer in words, a picture, and the table as CSV and JSON.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
     for (one, number) in budget.quantities.iter().zip(1..) {
         let table = table(one);
         let rows = table.to_csv()?;
-        // One header for all of them.
+        // All tables share one header.
         let skipped = if csv.is_empty() {
             0
         } else {
@@ -53,7 +53,7 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
     write_file(&folder.join(REPORT), text.as_bytes())
 }
 
-/// A row a cause, with all that is known of it.
+/// One row per cause, with all that is known of it.
 pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
     let columns = "quantity share cause changed starts adds low high unsolved cost note";
     let number =
@@ -90,7 +90,8 @@ fn colour(share: Share) -> Rgb {
     }]
 }
 
-/// A bar a cause, the largest first; beside it the settings of the method that were tried, by cost and by what they leave.
+/// A bar chart of the causes, the largest effect first, next to a chart of the tested time steps by cost and remaining
+/// error.
 fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     let mut rows: Vec<(&CauseRow, [f64; 3])> =
         one.causes.iter().filter_map(|row| Some((row, row.adds?))).collect();
@@ -138,7 +139,7 @@ fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     Sheet { size: (width, 200 + 50 * rows.len().max(4) as u32), charts, caption }
 }
 
-/// What the time steps that were tried leave beside the smallest of them, by what they cost.
+/// Differences between the tested time steps and the smallest of them, by cost.
 fn by_cost(one: &QuantityBudget, label: &str) -> Option<Chart> {
     let tried: Vec<Point> = one
         .left_by_time_step

@@ -4,39 +4,39 @@ use serde::Serialize;
 
 use super::causes::{Cause, Share, Variant};
 
-/// What changing one thing adds to the value.
+/// The effect of one change on the value.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct CauseRow {
-    /// Whose share it is.
+    /// The part of the budget that the cause belongs to.
     pub share: Share,
     pub cause: &'static str,
     /// The change.
     pub changed: String,
-    /// Starts that both came to a number from.
+    /// Number of initial states for which both runs gave a value.
     pub starts: usize,
-    /// The effect on the value, and its interval; none if it was not run, or if a run failed.
+    /// The effect on the value, and its interval; `None` if it was not run, or if a run failed.
     pub adds: Option<[f64; 3]>,
-    /// Part of its steps that were not solved as asked.
+    /// Fraction of the variant's steps that were unsolved.
     pub unsolved: f64,
-    /// Its time by that of the scene as it is. Another one on every machine, and every time.
+    /// Time relative to the unchanged scene. It differs between machines and repetitions.
     pub cost: Option<f64>,
-    /// Why there is no number.
+    /// The reason if there is no value.
     pub failure: Option<String>,
     #[serde(skip)]
     pub(super) kind: Cause,
 }
 
-/// Whether a number is one of the grains and their law, rather than of the method.
+/// Verdict on a result: whether it is due to the grains and their law and not to the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Trust {
-    /// Neither the method nor the choice of a law moves it by more than the user allows.
+    /// Neither the method nor the choice of a law changes it by more than the user allows.
     Yes,
-    /// The method does not; the choice of a law does, or that is not known yet.
+    /// The method does not; the choice of a law does, or its effect is not yet known.
     Mostly,
-    /// The method moves it by more.
+    /// The method changes it by more.
     No,
-    /// Intervals are too wide to say.
+    /// The intervals are too wide to decide.
     NotKnownYet,
 }
 
@@ -57,34 +57,35 @@ impl Trust {
 pub(crate) struct QuantityBudget {
     pub quantity: String,
     pub unit: &'static str,
-    /// Half the width that intervals were to have, and the largest share of a method that does not count.
+    /// Requested half-width of the intervals, which is also the largest acceptable effect of the method.
     pub within: f64,
-    /// Starts of the scene as it is.
+    /// Number of initial states of the unchanged scene.
     pub starts: usize,
-    /// Mean over initial states, and its interval; none if a run failed.
+    /// Mean over initial states, and its interval; `None` if a run failed.
     pub value: Option<[f64; 3]>,
-    /// Standard deviation between starts.
+    /// Standard deviation between initial states.
     pub spread: Option<f64>,
-    /// The value of the scene that the user asked for, if it is not one of the initial states.
+    /// The value of the scene that the user requested, if it is not one of the initial states.
     pub itself: Option<f64>,
     /// The effect of Δt → 0, if it is known.
     pub limit_adds: Option<[f64; 3]>,
-    /// Time of Δt, Δt/2 and Δt/4 over that of Δt, and the effect of each against Δt/8.
+    /// For Δt, Δt/2 and Δt/4: time relative to Δt, and difference to Δt/8.
     pub left_by_time_step: Vec<(f64, [f64; 3])>,
     pub trust: Trust,
     pub answer: String,
     pub causes: Vec<CauseRow>,
 }
 
-/// All that a budget is made of, but its runs.
+/// Everything in a budget except its runs.
 pub(super) struct Design<'a> {
     pub variants: &'a [Variant],
-    /// True if initial states are piles of other seeds; else grains are moved by 1e-9 d.
+    /// True if initial states are piles with different seeds; false if grains are displaced by 1e-9 d.
     pub has_seeds: bool,
     pub time_step_secs: f64,
 }
 
-/// Spread between starts that are moved by next to nothing, as a part of the width, that is no chaos.
+/// Largest spread between minimally displaced initial states that does not count as chaos, as a fraction of the
+/// requested width.
 pub(super) const SMOOTH: f64 = 0.01;
 
 pub(super) fn is_inside([_, low, high]: [f64; 3], within: f64) -> bool {
@@ -100,13 +101,13 @@ pub(super) fn is_seen([_, low, high]: [f64; 3]) -> bool {
 }
 
 impl QuantityBudget {
-    /// The smallest time step that came to a number, else the smallest.
+    /// The smallest time step with a value, or else the smallest time step.
     pub(super) fn smallest_step(&self) -> Option<&CauseRow> {
         let of_steps = || self.causes.iter().filter(|row| row.kind == Cause::TimeStep);
         of_steps().rfind(|row| row.adds.is_some()).or_else(|| of_steps().next_back())
     }
 
-    /// True where a cause of that share moves the value by more than is allowed.
+    /// True if a cause in this part of the budget changes the value by more than allowed.
     pub(super) fn is_any_outside(&self, share: Share) -> bool {
         let of_share = self.causes.iter().filter(|row| row.share == share);
         of_share.filter_map(|row| row.adds).any(|ends| is_outside(ends, self.within))
@@ -119,8 +120,8 @@ impl QuantityBudget {
 
     pub(super) fn judged(&self) -> Trust {
         let of = |share: Share| self.causes.iter().filter(move |row| row.share == share);
-        // Of the time step the smallest shows most of the whole effect. What a scene does not survive under another law is
-        // no doubt about its own.
+        // The smallest time step shows most of the whole effect. A scene that fails under another law gives no doubt
+        // about its own law.
         let smallest = self.smallest_step().map(|row| &row.changed);
         let counts = |row: &&CauseRow| match row.kind {
             Cause::TimeStep => Some(&row.changed) == smallest,

@@ -1,4 +1,4 @@
-//! The starts that all variants of a scene share, and their runs.
+//! The initial states that all variants of a scene share, and their runs.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -18,37 +18,37 @@ use crate::scene::{NewPile, Scene};
 use crate::sim::{RunEnding, Settings, Tally};
 use crate::states::settled_pile;
 
-/// How far grains are moved for another start of the same scene, in mean diameters: what is chaotic makes much of it.
+/// Displacement of grains for another initial state of the same scene, in mean diameters. In a chaotic scene it grows.
 const MOVED_IN_DIAMETERS: f64 = 1e-9;
 
-/// What a run came to.
+/// Results of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RunValues {
-    /// The quantities, in their order; none where the run has no such number.
+    /// The quantities, in order; `None` if the run has no such value.
     pub values: Vec<Option<f64>>,
-    /// Why they are worth nothing: its state was no longer finite, or grains were lost.
+    /// The reason why the values are invalid: the state was no longer finite, or grains were lost.
     pub failure: Option<String>,
-    /// Part of the steps that were not solved as asked.
+    /// Fraction of unsolved steps.
     #[serde(with = "number")]
     pub unsolved: f64,
-    /// How long it took without its start, s.
+    /// Duration without the preparation of the initial state, s.
     #[serde(with = "number")]
     pub run_secs: f64,
 }
 
-/// Where runs start from: piles of other seeds where the scene makes its grains, else the scene itself and the scene
-/// with its grains moved by next to nothing.
+/// The initial states of a budget: piles with other seeds if the scene generates its grains, else the scene itself and
+/// copies with minimally displaced grains.
 pub(super) struct Starts {
     config: Config,
     base: BaseScene,
-    /// The scene as it is asked for.
+    /// The requested scene.
     pub scene: Scene,
     pub pile: Option<NewPile>,
     states: PathBuf,
 }
 
 impl Starts {
-    /// Those of what is asked for. Initial states lie in `states`.
+    /// The initial states of a request. Those of piles are stored in `states`.
     pub(super) fn of(config: &Config, states: &Path) -> Result<Self> {
         let base = config.base_scene()?;
         let scene = config.change(&base)?;
@@ -64,7 +64,7 @@ impl Starts {
         Ok(starts)
     }
 
-    /// True where piles of another number of grains can be made.
+    /// True if piles with another number of grains can be made.
     pub(super) fn resizes(&self) -> bool {
         self.pile.is_some() && self.is_default_scene()
     }
@@ -73,14 +73,14 @@ impl Starts {
         self.config.named() == Config::DEFAULT_SCENE
     }
 
-    /// The seed of a start; none where grains are moved. The seed of the shipped pile, which was chosen for what it shows,
-    /// is never among them.
+    /// The seed of an initial state; `None` if grains are displaced. The seed of the shipped pile, which was chosen for
+    /// illustration, is never used.
     fn seed(&self, start: u64) -> Option<u64> {
         let chosen = NewPile::default().seed;
         self.pile.as_ref().map(|_| if start < chosen { start } else { start + 1 })
     }
 
-    /// The scene of a start, counted from 1, with a variant's settings and pile.
+    /// The scene of an initial state, counted from 1, with the settings and the pile of a variant.
     pub(super) fn scene(&self, start: u64, variant: Option<&Variant>) -> Result<Scene> {
         let settings = variant.map_or_else(|| self.scene.settings(), |variant| variant.settings);
         let pile = variant.and_then(|variant| variant.pile.as_ref()).or(self.pile.as_ref());
@@ -101,12 +101,12 @@ impl Starts {
         Ok(scene)
     }
 
-    /// The scene that was asked for.
+    /// The requested scene.
     pub(super) fn itself(&self) -> Result<Scene> {
         self.config.scene_on(self.base.clone(), |_| true)
     }
 
-    /// Names a run from a start, or of the scene itself: a hash of all that its result hangs on.
+    /// The key of a run from an initial state, or of the scene itself: a hash of everything that affects its result.
     pub(super) fn key(
         &self,
         start: Option<u64>,
@@ -169,7 +169,7 @@ pub(super) fn run(
     Ok(RunValues { values, failure, unsolved, run_secs: begun.elapsed().as_secs_f64() })
 }
 
-/// How a scene is stepped, in a few words.
+/// Stepper and solver of a scene, in a few words.
 pub(super) fn said_of(settings: &Settings) -> String {
     let parameters = &settings.parameters;
     format!(

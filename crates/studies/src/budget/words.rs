@@ -1,15 +1,15 @@
-//! The answer of a budget in words: one template sentence for each thing that is known.
+//! The answer of a budget in words: one sentence template for each possible finding.
 
 use super::causes::{Cause, DIVISORS, Share, short};
 use super::collect::{BudgetEnd, OUTSIDE, Runs};
 use super::rows::{CauseRow, Design, QuantityBudget, SMOOTH, Trust, is_inside, is_seen};
 
-/// A number with as many decimals as half an interval has meaning for.
+/// Rounds a number to the decimals that are meaningful for an interval of half-width `half`.
 fn rounded(number: f64, half: f64) -> String {
     if !(half > 0.0 && half.is_finite()) {
         return short(number);
     }
-    // Two digits of what begins with 1, else one.
+    // Two digits if the half-width begins with 1, else one digit.
     let power = half.log10().floor();
     let digits = if half / 10f64.powf(power) < 1.95 { 1.0 } else { 0.0 };
     let decimals = digits - power;
@@ -29,7 +29,7 @@ fn rounded(number: f64, half: f64) -> String {
     format!("{number:.*e}", digits as usize)
 }
 
-/// One, another and a third.
+/// "One, another and a third".
 fn listed(names: &[String]) -> String {
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
@@ -42,13 +42,13 @@ fn subject(row: &CauseRow) -> String {
     row.kind.subject().replace("{}", &row.changed)
 }
 
-/// The text with its first letter changed.
+/// The text with its first letter changed by a function.
 fn with_first(text: &str, change: fn(&char) -> char) -> String {
     let mut letters = text.chars();
     letters.next().iter().map(change).chain(letters).collect()
 }
 
-/// The answer. `is_halved` is true if the halvings of the time step all came to a number.
+/// The answer. `is_halved` is true if all halvings of the time step gave a value.
 pub(super) fn paragraph(
     budget: &QuantityBudget,
     (runs, ended): (&Runs, BudgetEnd),
@@ -65,9 +65,9 @@ pub(super) fn paragraph(
     said.join(" ")
 }
 
-/// Its sentences.
+/// The sentences of the answer.
 impl QuantityBudget {
-    /// A number whose interval has this half width. It is known no better than the largest change that counts as none.
+    /// A number whose interval has this half-width. Its precision is limited by the largest change that counts as none.
     fn number(&self, number: f64, half: f64) -> String {
         rounded(number, half.max(SMOOTH * self.within))
     }
@@ -82,7 +82,7 @@ impl QuantityBudget {
         is_seen(ends) && Self::most(ends) > SMOOTH * self.within
     }
 
-    /// The largest size of an effect that is not significant; nothing if the effect is exactly 0.
+    /// The largest possible size of an effect that is not significant; empty if the effect is exactly 0.
     fn at_most(&self, ends: [f64; 3]) -> String {
         let (most, least) = (Self::most(ends), SMOOTH * self.within);
         match most {
@@ -128,7 +128,7 @@ impl QuantityBudget {
         let smallest = self.smallest_step()?;
         let [mean, low, high] = smallest.adds?;
         let [base, ..] = self.value.unwrap_or([f64::NAN; 3]);
-        // The scatter of the mean value is not that of a paired difference, whose interval is given.
+        // The scatter of the mean value differs from that of a paired difference, whose interval is given.
         let value = self.with_unit(&self.number(base + mean, high - mean));
         let end = match self.limit_adds {
             Some([mean, low, high]) if is_seen([mean, low, high]) => {
@@ -151,8 +151,8 @@ impl QuantityBudget {
         if mean > 0.0 { format!("adds {size}") } else { format!("takes {size} away") }
     }
 
-    /// A sentence for each effect that is seen, the largest first; one for all others, and one for each reason for
-    /// which effects are missing.
+    /// One sentence for each significant effect, the largest first; one for all others; and one for each reason why
+    /// effects are missing.
     fn of_causes(&self) -> Vec<String> {
         let smallest = self.smallest_step().map(|row| &row.changed);
         let (mut seen, mut unseen) = (Vec::new(), Vec::new());
@@ -160,11 +160,11 @@ impl QuantityBudget {
         for row in &self.causes {
             let is_of_step = row.kind == Cause::TimeStep;
             match row.adds {
-                // The sentence about the time step has them.
+                // The sentence about the time step covers these.
                 Some(_) if is_of_step => {}
                 None if is_of_step && Some(&row.changed) == smallest => {}
                 Some([mean, low, high]) if self.is_told([mean, low, high]) => {
-                    // The change is to solve better: unsolved steps add the opposite.
+                    // The change is a tighter solve, so the effect of unsolved steps has the opposite sign.
                     let is_undone = row.kind == Cause::Unsolved;
                     let ends = if is_undone { [-mean, -high, -low] } else { [mean, low, high] };
                     let subject = with_first(&subject(row), char::to_ascii_uppercase);
@@ -218,7 +218,7 @@ impl QuantityBudget {
         }
     }
 
-    /// The cheapest time step that was tried and whose part of the value is small enough.
+    /// The cheapest tested time step whose effect on the value is small enough.
     fn of_cost(&self, within: &str, time_step_secs: f64) -> Option<String> {
         if self.trust != Trust::No || self.left_by_time_step.is_empty() {
             return None;

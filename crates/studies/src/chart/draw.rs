@@ -1,4 +1,4 @@
-//! Sheets drawn by plotters, with the font that comes with the program.
+//! Draws sheets with plotters, in the font that is included in the program.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -19,27 +19,27 @@ const TITLE: u32 = 27;
 const WORDS: u32 = 24;
 const CAPTION: u32 = 20;
 const WITHIN: u32 = 18;
-/// Room for the words beside the vertical axis, and for each character of longer ones, pixels.
+/// Space for the text beside the vertical axis, and for each character of longer text, pixels.
 const BESIDE: u32 = 104;
 const CHARACTER: u32 = 12;
-/// Room of the legend above its first entry, for a line of words, which a line of the caption has too, between two
-/// entries, and for the key of one; and width of a character of the caption, pixels.
+/// Sizes of the legend, pixels: space above its first entry, height of a line of text (also in the caption), space
+/// between entries, width of an entry's symbol; and the width of a character of the caption.
 const ABOVE: u32 = 70;
 const CAPTION_LINE: u32 = 28;
 const BETWEEN: u32 = 8;
 const KEY: u32 = 70;
 const CAPTION_CHARACTER: u32 = 10;
-/// Half the height of a horizontal bar, in those of its row.
+/// Half the height of a horizontal bar, relative to the height of its row.
 const BAR: f64 = 0.32;
-/// Name that the font goes by; one that browsers know too, for the SVG.
+/// Name of the font; browsers know it too, for the SVG.
 const FONT: &str = "sans-serif";
 
 type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoordinates>>;
 
-/// The sheet as PNG, which says of itself which command draws it.
+/// The sheet as PNG. The file contains the command that draws it.
 ///
 /// # Errors
-/// Where plotters or the encoder fails.
+/// If plotters or the encoder fails.
 pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
     let layout = Layout::of(sheet);
     let (width, height) = layout.size;
@@ -56,7 +56,7 @@ pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
 /// The sheet as SVG.
 ///
 /// # Errors
-/// Where plotters fails.
+/// If plotters fails.
 pub fn svg(sheet: &Sheet) -> Result<String> {
     let layout = Layout::of(sheet);
     let mut text = String::new();
@@ -64,11 +64,11 @@ pub fn svg(sheet: &Sheet) -> Result<String> {
     Ok(text)
 }
 
-/// Where the parts of a sheet stand: its charts, a legend to their right, and the caption below.
+/// Positions of the parts of a sheet: its charts, a legend to their right, and the caption below.
 struct Layout<'a> {
     sheet: &'a Sheet,
     size: (u32, u32),
-    /// The curves that the legend tells of, each name once.
+    /// Curves in the legend, each name once.
     legend: Vec<(&'a str, Rgb, Look)>,
     caption: Vec<String>,
 }
@@ -96,7 +96,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// Words in lines of no more than so many characters.
+/// Breaks text into lines of at most `most` characters.
 fn wrapped(words: &str, most: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in words.split(' ') {
@@ -119,7 +119,7 @@ fn failed(error: impl std::fmt::Display) -> Error {
 fn register_fonts() -> Result<()> {
     static DONE: OnceLock<bool> = OnceLock::new();
     let regular = include_bytes!("../../../../assets/fonts/DejaVuSansCondensed.ttf");
-    // A page has no charts: there words are those of the browser.
+    // The browser version has no charts, and its text is in the browser's fonts.
     #[cfg(target_arch = "wasm32")]
     let register = |_: &[u8]| false;
     #[cfg(not(target_arch = "wasm32"))]
@@ -137,7 +137,7 @@ fn draw<DB: DrawingBackend>(layout: &Layout<'_>, area: DrawingArea<DB, Shift>) -
     for (line, y) in caption.iter().zip((below as i32..).step_by(CAPTION_LINE as usize)) {
         area.draw_text(line, &style, (16, y)).map_err(failed)?;
     }
-    // Charts share the width by their own.
+    // Charts share the width of the sheet in proportion to their own widths.
     let total: f64 = sheet.charts.iter().map(|chart| chart.width).sum();
     let mut before = 0.0;
     for chart in &sheet.charts {
@@ -280,12 +280,12 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
     Ok(())
 }
 
-/// Width of a look's line, 0 where it has none, and radius and style of its dots.
+/// Width of a line style, 0 if it has no line, and radius and style of its dots.
 fn strokes(look: Look, colour: RGBColor) -> (u32, Option<(u32, ShapeStyle)>) {
     match look {
         Look::Line(width) | Look::Dashes(width) => (width, None),
         Look::LineAndDots => (3, Some((5, colour.filled()))),
-        // In the legend; on a chart they are drawn by themselves.
+        // In the legend only; on a chart, bars are drawn separately.
         Look::Bars => (14, None),
         Look::Dots(radius) => (0, Some((radius, colour.filled()))),
         Look::Rings(radius) => (0, Some((radius, colour.stroke_width(2)))),
@@ -296,10 +296,10 @@ fn rgb((red, green, blue): Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// A mark this near, in units of the axis, is the one that is meant.
+/// Largest distance from a tick mark, as a fraction of the axis, at which a coordinate is taken for it.
 const NEAR: f64 = 1e-6;
 
-/// Coordinates along an axis (`Scale::place`) and the marks at it.
+/// Coordinates along an axis (`Scale::place`) and its tick marks.
 struct AxisCoordinates {
     range: Range<f64>,
     marks: Vec<(f64, String)>,
@@ -326,7 +326,7 @@ impl Ranged for AxisCoordinates {
 
     fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
         let share = (value - self.range.start) / (self.range.end - self.range.start);
-        // What lies off the axis is drawn at its end.
+        // Points outside the axis are drawn at its end.
         from + (f64::from(to - from) * share.clamp(0.0, 1.0)).round() as i32
     }
 
@@ -344,7 +344,7 @@ impl Ranged for AxisCoordinates {
 
 impl ValueFormatter<f64> for AxisCoordinates {
     fn format_ext(&self, place: &f64) -> String {
-        // An axis may run backwards.
+        // An axis may be reversed.
         let span = (self.range.end - self.range.start).abs();
         let mark = self.marks.iter().find(|(mark, _)| (mark - place).abs() < NEAR * span);
         mark.map_or(String::new(), |(_, words)| words.clone())

@@ -1,5 +1,6 @@
-//! Lines of one width whatever their slope. plotters fills them as polygons whose corners are whole pixels, so that a line of
-//! three pixels may be two or four wide; here each pixel takes as much colour as it lies within the line.
+//! Lines with the same width for every slope. plotters fills lines as polygons with whole-pixel corners, so a line of
+//! three pixels may become two or four pixels wide. Here each pixel is coloured in proportion to the part of it that
+//! the line covers.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +8,7 @@ use glam::DVec2;
 use plotters::prelude::{BitMapBackend, DrawingBackend};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKind};
 
-/// A bitmap with such lines.
+/// A bitmap backend that draws such lines.
 pub(super) struct EvenLines<'a>(pub BitMapBackend<'a>);
 
 type Outcome<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
@@ -54,7 +55,8 @@ impl<'a> DrawingBackend for EvenLines<'a> {
     }
 }
 
-/// The pixels of a line and the parts of them that it covers: a pixel whose centre is half the width away is half covered.
+/// The pixels of a line and the fraction of each that it covers. A pixel whose centre is half the width away is half
+/// covered.
 fn covered(path: &[BackendCoord], width: f64) -> BTreeMap<BackendCoord, f64> {
     let place = |(x, y): BackendCoord| DVec2::new(f64::from(x), f64::from(y));
     let reach = (0.5 * width + 1.0).ceil() as i32;
@@ -84,7 +86,7 @@ fn covered(path: &[BackendCoord], width: f64) -> BTreeMap<BackendCoord, f64> {
 mod tests {
     use super::*;
 
-    /// Sum of the parts over the length of a line, but for its round ends.
+    /// Sum of the covered fractions over the length of a line, without its round ends.
     fn mean_width(to: BackendCoord, width: f64) -> f64 {
         let area: f64 = covered(&[(0, 0), to], width).values().sum();
         let length = f64::from(to.0).hypot(f64::from(to.1));

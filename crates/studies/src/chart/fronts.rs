@@ -1,12 +1,11 @@
-//! What charts of cost and error have in common: fronts, and names at the ends of curves.
+//! Common parts of charts of cost and error: Pareto fronts, and labels at the ends of curves.
 
 use super::{Axis, Chart, Layer, Rgb};
 
-/// The points (speed, error) that no other beats in both, by rising speed. Of equal ones the first
-/// is kept.
+/// The points (speed, error) that no other point beats in both, by increasing speed. Of equal points the first is kept.
 pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
-    // Fastest first; of equally fast ones the most accurate first.
+    // Fastest first; among equally fast points, the most accurate first.
     order.sort_by(|&one, &other| {
         let ((speed, error), (other_speed, other_error)) = (points[one], points[other]);
         other_speed.total_cmp(&speed).then(error.total_cmp(&other_error))
@@ -23,12 +22,12 @@ pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     front
 }
 
-/// Length of a character of a label, and the height of labels, in those of a chart.
+/// Width of a character and height of a label, as fractions of a chart.
 const CHARACTER: f64 = 0.018;
 const HIGH: f64 = 0.05;
 
 impl Chart {
-    /// Adds words beside the ends of curves on logarithmic axes: to the right of points of all curves there, and moved apart.
+    /// Adds labels at the ends of curves on logarithmic axes, to the right of all points near them, and spaced apart.
     pub fn add_end_labels(&mut self, mut ends: Vec<(String, Rgb, (f64, f64))>) {
         let part = |axis: &Axis, share: f64| (axis.to / axis.from).powf(share);
         let high = part(&self.y, HIGH);
@@ -43,7 +42,7 @@ impl Chart {
             last = f64::max(y, last * high);
             let long = part(&self.x, CHARACTER * (text.chars().count() + 1) as f64);
             let is_in_the_way = |(other_x, other_y): &&(f64, f64)| {
-                // What is a little below rises through the label.
+                // A point slightly below would also run into the label.
                 let heights = last / (high * high)..last * high;
                 (1.0..long).contains(&(other_x / x)) && heights.contains(other_y)
             };
@@ -72,7 +71,7 @@ mod tests {
         let axis = || Axis::log("", 1e-4, 1e4);
         let mut chart = Chart::new("", axis(), axis());
         let ends = PALETTE.map(|colour| ("one".to_owned(), colour, (1.0, 0.01)));
-        // It begins beside them and ends elsewhere.
+        // The curve begins next to the labels and ends elsewhere.
         let near = [(3.0, 0.01), (9.0, 1e-4)];
         chart.layers.push(Layer::quiet("near", points(near), PALETTE[0], Look::LineAndDots));
         chart.add_end_labels(ends.to_vec());

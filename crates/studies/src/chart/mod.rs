@@ -1,5 +1,5 @@
-//! Charts as plain data: what is on them, independent of how they are drawn. The same data makes the
-//! PNG, the SVG and the CSV, so that the CSV holds every point.
+//! Charts as plain data, independent of how they are drawn. The PNG, the SVG and the CSV are made from the same data,
+//! so the CSV contains every point.
 
 mod draw;
 mod even_lines;
@@ -10,11 +10,11 @@ pub use fronts::pareto_front;
 
 use crate::error::{Error, Result};
 
-/// A colour, 0 … 255 each.
+/// A colour: red, green and blue, 0 … 255 each.
 pub type Rgb = (u8, u8, u8);
 
 pub(crate) const INK: Rgb = (40, 40, 40);
-/// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
+/// Colours that people with any colour vision can distinguish (Okabe and Ito 2008).
 pub const PALETTE: [Rgb; 7] = [
     (0, 0, 0),
     (0, 114, 178),
@@ -25,7 +25,7 @@ pub const PALETTE: [Rgb; 7] = [
     (213, 94, 0),
 ];
 
-/// Distance of curves that stand side by side, in widths of the chart.
+/// Distance between curves that are drawn side by side, in widths of the chart.
 const ASIDE: f64 = 0.006;
 
 /// One axis of a chart.
@@ -35,7 +35,7 @@ pub struct Axis {
     pub(crate) scale: Scale,
     pub(crate) from: f64,
     pub(crate) to: f64,
-    /// Places with words of their own; where there are none, round numbers.
+    /// Tick positions with their own labels; if empty, round numbers are used.
     pub(crate) ticks: Vec<(f64, String)>,
 }
 
@@ -51,7 +51,7 @@ impl Axis {
     }
 }
 
-/// A point, with the ends of its interval where it has one.
+/// A point, with its interval if it has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// On the x axis.
@@ -70,76 +70,76 @@ pub(crate) fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point>
 /// A filled rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapCell {
-    /// What it stands for on the x axis, and the edges to its left and right.
+    /// Value on the x axis, and the left and right edges.
     pub x: (f64, [f64; 2]),
-    /// What it stands for on the y axis, and its lower and upper edge.
+    /// Value on the y axis, and the lower and upper edges.
     pub y: (f64, [f64; 2]),
-    /// What its colour stands for.
+    /// Value that the colour shows.
     pub value: f64,
 }
 
 /// How a layer is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// A line of that many pixels.
+    /// A line of this width, pixels.
     Line(u32),
-    /// A dashed line of that many pixels.
+    /// A dashed line of this width, pixels.
     Dashes(u32),
-    /// Filled discs of that radius in pixels.
+    /// Filled discs of this radius, pixels.
     Dots(u32),
-    /// Empty circles of that radius in pixels.
+    /// Empty circles of this radius, pixels.
     Rings(u32),
     /// A line through filled discs.
     LineAndDots,
-    /// Horizontal bars from 0 to x, whose intervals are in x.
+    /// Horizontal bars from 0 to x, with intervals in x.
     Bars,
 }
 
-/// Something on a chart.
+/// One layer of a chart.
 #[derive(Clone, Debug)]
 pub enum Layer {
-    /// Points, joined or not.
+    /// Points, with or without lines between them.
     Curve {
-        /// Name in the CSV, and in the legend where `in_legend`.
+        /// Name in the CSV, and in the legend if `in_legend` is true.
         name: String,
-        /// True if the legend tells of it.
+        /// True if the curve is in the legend.
         in_legend: bool,
-        /// Its points, in order.
+        /// The points, in order.
         points: Vec<Point>,
-        /// Its colour.
+        /// The colour.
         colour: Rgb,
-        /// How it is drawn.
+        /// The style.
         look: Look,
-        /// How far aside it is drawn, in widths of the chart, so that bars do not hide each other.
+        /// Horizontal offset, in widths of the chart, so that intervals of several curves do not hide each other.
         aside: f64,
     },
-    /// Filled rectangles, each with the value that its colour stands for.
+    /// Filled rectangles, each with the value that its colour shows.
     Cells {
         /// Name in the CSV.
         name: String,
         /// The rectangles.
         cells: Vec<MapCell>,
-        /// Value → colour.
+        /// Colour of a value.
         colour: fn(f64) -> Rgb,
     },
-    /// Words at a place.
+    /// A label.
     Words {
-        /// Where they begin, in the axes' units.
+        /// Position of its beginning, in the axes' units.
         at: (f64, f64),
-        /// The words.
+        /// The text.
         text: String,
-        /// Their colour.
+        /// Colour of the text.
         colour: Rgb,
     },
 }
 
 impl Layer {
-    /// A curve that the legend tells of.
+    /// A curve that is in the legend.
     pub fn curve(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
         Self::Curve { name: name.into(), in_legend: true, points, colour, look, aside: 0.0 }
     }
 
-    /// The same curve, number `index` of `count` side by side.
+    /// This curve, shifted as number `index` of `count` curves side by side.
     pub fn beside(mut self, index: usize, count: usize) -> Self {
         if let Self::Curve { aside, .. } = &mut self {
             *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
@@ -147,7 +147,7 @@ impl Layer {
         self
     }
 
-    /// A curve that the legend leaves out.
+    /// A curve that is not in the legend.
     pub fn quiet(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
         Self::Curve { name: name.into(), in_legend: false, points, colour, look, aside: 0.0 }
     }
@@ -161,7 +161,7 @@ pub struct Chart {
     pub(crate) y: Axis,
     /// From back to front.
     pub layers: Vec<Layer>,
-    /// Its share of the width of the sheet.
+    /// Relative width on the sheet.
     pub(crate) width: f64,
 }
 
@@ -172,14 +172,14 @@ impl Chart {
     }
 }
 
-/// Charts side by side, with a legend of all curves to their right and words below.
+/// Charts side by side, with a legend of all curves to their right and a caption below.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Of the charts without legend and caption, pixels.
+    /// Size of all charts without legend and caption, pixels.
     pub size: (u32, u32),
-    /// From left to right.
+    /// The charts, from left to right.
     pub charts: Vec<Chart>,
-    /// Lines of words below.
+    /// Lines of the caption.
     pub caption: Vec<String>,
 }
 
@@ -191,7 +191,7 @@ impl Sheet {
     /// Every point of every layer as CSV: panel, layer, x, y, low, high, value.
     ///
     /// # Errors
-    /// Where a row cannot be said in CSV.
+    /// If a row cannot be written as CSV.
     pub fn to_csv(&self) -> Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let refuse = |error: csv::Error| Error::file("figure", error);
@@ -235,11 +235,11 @@ pub(crate) enum Scale {
 
 const MARKS: f64 = 6.0;
 
-/// On a logarithmic axis that ends below this many times its beginning, 2 and 5 have words too.
+/// If a logarithmic axis ends below this many times its beginning, 2 and 5 also have labels.
 const SHORT: f64 = 80.0;
 
 impl Scale {
-    /// Where a number stands, in a unit that grows evenly along the axis.
+    /// Position of a number, in a unit that grows evenly along the axis.
     fn place(self, number: f64) -> f64 {
         match self {
             Self::Linear => number,
@@ -247,7 +247,7 @@ impl Scale {
         }
     }
 
-    /// Round numbers between two others, with the words for them; those without words are minor.
+    /// Round numbers in an interval, with their labels; minor ticks have no label.
     fn marks(self, from: f64, to: f64) -> Vec<(f64, String)> {
         match self {
             Self::Linear => linear_marks(from, to),
@@ -290,10 +290,10 @@ fn log_marks(from: f64, to: f64) -> Vec<(f64, String)> {
     marks
 }
 
-/// Exponents of numbers that are written out.
+/// Exponents of the powers of ten that are written as decimals.
 const PLAIN: std::ops::RangeInclusive<i32> = -2..=2;
 
-/// 10⁻⁴, and plain numbers from 0.01 to 100.
+/// A power of ten: 10⁻⁴, or a decimal from 0.01 to 100.
 fn power_of_ten(exponent: i32) -> String {
     if PLAIN.contains(&exponent) {
         return format!("{}", 10f64.powi(exponent));

@@ -1,27 +1,27 @@
-//! Claims and their verdicts, and how often a test says that a claim holds where nothing is behind it: the same test, on
-//! the same runs, with Δt shuffled among those that are alike but for Δt. What scatters and how much is then as it was,
-//! and no effect is left.
+//! Claims with verdicts, and the rate at which a test accepts a claim by chance. For that rate, the same test is
+//! applied to the same runs after Δt has been shuffled among runs that only differ in Δt. The scatter is then
+//! unchanged, and no effect remains.
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
 
-/// p-values below this count as evidence.
+/// Significance level: p-values below it count as evidence.
 pub(super) const SIGNIFICANT: f64 = 0.05;
 
-/// Ratio of the ends of an interval that is narrow enough to confirm what lies in it.
+/// Largest ratio of the ends of an interval that can confirm a value in it.
 const NARROW: f64 = 3.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Holds,
     Fails,
-    /// The data show neither.
+    /// The data decide neither way.
     Open,
 }
 
 impl Verdict {
-    /// A claim that is shown where `p` is small, and its contrary where `p_contrary` is.
+    /// The verdict on a claim with p-value `p` whose contrary has p-value `p_contrary`.
     pub(super) fn of(p: f64, p_contrary: f64) -> Self {
         match (p < SIGNIFICANT, p_contrary < SIGNIFICANT) {
             (true, _) => Self::Holds,
@@ -30,8 +30,8 @@ impl Verdict {
         }
     }
 
-    /// A guess at a ratio: it fails outside the interval, and an interval wider than a factor of
-    /// [`NARROW`] decides nothing.
+    /// The verdict on a guess at a ratio. It fails outside the interval, and an interval wider than a factor of
+    /// [`NARROW`] does not decide.
     pub(super) fn of_interval(guess: f64, low: f64, high: f64) -> Self {
         if guess < low || guess > high {
             Self::Fails
@@ -57,17 +57,17 @@ impl From<bool> for Verdict {
     }
 }
 
-/// What is said, what was measured, and whether it holds.
+/// A claim, its measurement, and the verdict.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
-    /// What the paper says, or is asked beyond it.
+    /// The statement of the paper, or a further question.
     pub said: String,
-    /// What was measured, with its interval or p-value.
+    /// The measured value, with its interval or p-value.
     pub measured: String,
     pub verdict: Verdict,
-    /// How often the test would say that it holds with nothing behind it; empty where nothing is drawn at random.
+    /// Rate at which the test accepts the claim by chance; empty if nothing is random.
     pub by_chance: String,
-    /// The free choices that the verdict hangs on; empty where there are none but those of all runs of the figure.
+    /// Free choices that affect the verdict; empty if they are the same for all runs of the figure.
     pub hangs_on: String,
 }
 
@@ -81,13 +81,13 @@ impl Claim {
         Self { said: said.into(), measured: measured.into(), verdict, by_chance, hangs_on }
     }
 
-    /// The same with how often its test would say so with nothing behind it, in words.
+    /// Adds the rate at which the test accepts the claim by chance, in words.
     pub(super) fn by_chance(self, by_chance: impl Into<String>) -> Self {
         Self { by_chance: by_chance.into(), ..self }
     }
 
-    /// The same with how often its test says that it holds after shuffles of `groups`, to which the effect at the
-    /// `border` of what it allows is added.
+    /// Adds the rate at which the test accepts the claim after shuffles of `groups`. Each shuffled result gets the
+    /// limiting effect `border` that the claim still allows.
     pub(super) fn shuffled(
         self,
         groups: &[Alike],
@@ -105,14 +105,14 @@ impl Claim {
     }
 }
 
-/// Shuffles. The share of a test at 5 % is then known to ± 1.4 %.
+/// Number of shuffles. The rate of a test at the 5 % level is then known to ± 1.4 %.
 const SHUFFLES: usize = 1000;
 
-/// Runs that are alike but for one number: that number, and a result, of each.
+/// Runs that differ in one number only: that number and the result of each run.
 pub(super) type Alike = Vec<(f64, f64)>;
 
-/// The share of shuffles of all groups after which the claim `holds`. `border` is put back in after the shuffle: an
-/// effect that a claim allows for, at the border of what it allows.
+/// Fraction of shuffles of all groups after which the claim `holds`. After a shuffle, `border` adds the largest effect
+/// that the claim still allows.
 fn share_by_chance(
     groups: &[Alike],
     border: impl Fn(f64) -> f64,
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::statistics::{mean, slope};
 
-    /// Sixteen states with six Δt each, whose results fall by `fall` a decade.
+    /// Sixteen initial states with six Δt each, whose results fall by `fall` per decade.
     fn states(fall: f64) -> Vec<Alike> {
         let of_state = |state: usize| {
             let run = |step: usize| {

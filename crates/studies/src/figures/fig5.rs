@@ -1,5 +1,6 @@
-//! Fig. 5: slump (a) and mean overlap (b) of piles against Δt, as means over initial states, with the single state of
-//! Fig. 4 as thin lines; and what is asked of them state by state, with how often each test would say so by chance.
+//! Fig. 5: slump (a) and mean overlap (b) of piles against Δt, as means over initial states, with the single initial
+//! state of Fig. 4 as thin lines. Claims are tested for each initial state, with the rate at which each test accepts
+//! its claim by chance.
 
 use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
 use super::studies::{ensemble, groups, log_step};
@@ -10,21 +11,22 @@ use crate::harness::{MeasuredCase, Measurements};
 use crate::scene::NewPile;
 use crate::statistics::{Mean, mean, p_of_either, p_value, slope};
 
-/// What every claim about the slump of piles hangs on besides the cone.
+/// Choices other than the cone that affect every claim about the slump of piles.
 const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
                        restitution without a threshold; the states. `slump budget` tells what each of them adds";
 const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];
-/// A pile whose slump changes by less than this per decade of Δt is flat: a tenth of what the paper's
-/// cohesive piles do.
+/// Largest change of the slump per decade of Δt of a pile that counts as flat: a tenth of the change of the paper's
+/// cohesive piles.
 const FLAT_PER_DECADE: f64 = 0.02;
-/// The mean overlap at which the paper has contacts begin to be lost, in diameters.
+/// Mean overlap at which, according to the paper, contacts begin to be lost, in diameters.
 const LARGE_OVERLAP: f64 = 0.01;
-/// Where the paper's axis of overlaps ends, in diameters.
+/// End of the paper's axis of overlaps, in diameters.
 const END_OF_AXIS: f64 = 0.06;
 
-/// A claim of Fig. 5a about one Bond: in words, its test, and the slope a decade at the border of what it allows.
+/// A claim of Fig. 5a about one Bond number: the Bond number, the claim in words, its test, and the limiting slope per
+/// decade that it still allows.
 type SlumpClaim = (f64, &'static str, SlumpTest, f64);
-/// What was measured, over slumps of each initial state by log₁₀ Δt, rising; and whether the claim holds.
+/// A test on the slumps of each initial state by increasing log₁₀ Δt: returns the measurement in words and the verdict.
 type SlumpTest = fn(&[Alike]) -> (String, Verdict);
 
 const SLUMP_CLAIMS: [SlumpClaim; 4] = [
@@ -68,8 +70,8 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig5a", sheet, claims, table: None })
 }
 
-/// Fig. 5b: the mean overlap on axes that tell an exponent and on the paper's; and whether slump rises with Δt where
-/// overlaps are large and contacts are lost.
+/// Fig. 5b: the mean overlap on axes that show an exponent and on the paper's axes. It tests whether slump rises with
+/// Δt at large overlaps, and whether contacts are lost.
 pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let all = studies.rows("pile")?;
     let rows = ensemble(&all);
@@ -80,7 +82,8 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
     let of_paper = chart(&all, "On the paper's axes", x, y, "mean_overlap");
     let caption = vec![format!(
-        "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
+        "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in \
+            no mean.",
         rows.values("seed").len()
     )];
     let sheet = Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption };
@@ -93,7 +96,7 @@ fn time_steps() -> Axis {
     Axis::log("Δt (s)", 8e-5, 6.5e-3)
 }
 
-/// A number of all runs against Δt, a curve a Bond.
+/// A reading of all runs against Δt, with one curve per Bond number.
 fn chart(rows: &Measurements<'_>, title: &str, x: Axis, y: Axis, reading: &str) -> Chart {
     let mut chart = Chart::new(title, x, y);
     let bonds = rows.values("bond");
@@ -149,8 +152,8 @@ fn tested(slope: &Mean, side: &str, p: f64, p_not: f64) -> (String, Verdict) {
     (format!("{measured}; {side} 0: {}", p_value(p)), Verdict::of(p, p_not))
 }
 
-/// Both ends lie above the mean of what is between them, state by state. Which Δt is lowest is not
-/// asked, so that nothing is picked after the fact.
+/// Tests whether both ends lie above the mean of the values between them, for each initial state. It does not select
+/// the lowest Δt, so nothing is chosen after the fact.
 fn minimum(states: &[Alike]) -> (String, Verdict) {
     let rise = |end: fn(&Alike) -> f64| {
         let over = |pairs: &Alike| {
@@ -197,8 +200,8 @@ fn stays_below(rows: &Measurements<'_>) -> Claim {
     .hanging_on("what counts as overlap: |gap|/d of touching grains, averaged over steps")
 }
 
-/// Slope of slump between neighbouring Δt where the larger of the two has a mean overlap above the border, less
-/// that where it has not, state and Bond by state and Bond; those that lie on one side alone say nothing.
+/// Difference of the slopes of slump between neighbouring Δt: pairs whose larger Δt has a mean overlap above the limit,
+/// minus the other pairs, for each initial state and Bond number. Groups with pairs on one side only are left out.
 fn turn(slumps: &[Alike], overlaps: &[Alike]) -> Mean {
     let of_group = |(slumps, overlaps): (&Alike, &Alike)| {
         let pairs = slumps.windows(2).zip(&overlaps[1..]);
@@ -215,7 +218,7 @@ fn turn(slumps: &[Alike], overlaps: &[Alike]) -> Mean {
     mean(&slumps.iter().zip(overlaps).filter_map(of_group).collect::<Vec<_>>())
 }
 
-/// That slump begins to rise with Δt where overlaps are large.
+/// The claim that slump begins to rise with Δt at large overlaps.
 fn reverses(cohesive: &Measurements<'_>) -> Claim {
     let slumps = groups(cohesive, log_step, |run| run.reading("slump"));
     let overlaps = groups(cohesive, log_step, |run| run.reading("mean_overlap"));
@@ -238,7 +241,8 @@ fn reverses(cohesive: &Measurements<'_>) -> Claim {
     )
 }
 
-/// That piles have fewer contacts at larger Δt where they are strong, and that those with fewer slump more.
+/// The claim that strongly cohesive piles have fewer contacts at larger Δt, and that piles with fewer contacts slump
+/// more.
 fn loses(cohesive: &Measurements<'_>) -> Claim {
     let strongest = cohesive.values("bond").last().copied().unwrap_or(f64::NAN);
     let strong = &cohesive.with("bond", strongest);

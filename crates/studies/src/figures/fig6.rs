@@ -1,4 +1,4 @@
-//! Fig. 6: slump against the cohesive time Bond·Δt/√(d/g), and whether 1 parts two regimes.
+//! Fig. 6: slump against the cohesive time Bond·Δt/√(d/g), and whether two regimes meet at 1.
 
 use rand::{RngExt, SeedableRng};
 
@@ -11,7 +11,8 @@ use crate::harness::MeasuredCase;
 use crate::statistics::{mean, p_of_either, p_value, slope, turning_point};
 
 const RESAMPLINGS: usize = 400;
-/// As many for each of many shuffles, for time: their interval holds less, so that a shuffle differs from 1 more often.
+/// Number of resamplings for each shuffle, fewer to save time. Their interval is narrower, so a shuffle differs from 1
+/// more often.
 const FEWER_RESAMPLINGS: usize = 20;
 
 /// d of the piles, m, and g, m/s².
@@ -62,7 +63,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig6", sheet, claims, table: None })
 }
 
-/// The groups of each of `count` states in one.
+/// Merges the groups of each of `count` initial states.
 fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }
@@ -117,7 +118,7 @@ fn regimes(groups: &[Alike], count: usize) -> Claim {
     )
 }
 
-/// Where the slump turns, with the interval in which it does so for resampled initial states.
+/// The turning point of the slump, with its interval over resampled initial states.
 #[derive(Clone, Copy)]
 struct Turn {
     place: f64,

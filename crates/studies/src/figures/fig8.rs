@@ -1,5 +1,5 @@
-//! The bond of i and j, which the cradle's shock may open: at which Δt, in which share of runs over many start
-//! distances, and over Δt and stopping tolerance.
+//! The bond of i and j, which the cradle's shock may open: its state by Δt, the fraction of open bonds over many start
+//! distances, and a map over Δt and stopping tolerance.
 
 use super::claims::{Claim, Verdict};
 use super::{Figure, StudyRunner};
@@ -9,10 +9,10 @@ use crate::harness::{MeasuredCase, Measurements, ReportTable};
 use crate::scene::cradle;
 use crate::statistics;
 
-/// The bond is open where i and j are further apart at the end, in diameters: well above rounding,
-/// well below any distance that the discs of an open bond cover.
+/// The bond counts as open if i and j are further apart at the end, in diameters. The value is well above rounding, and
+/// well below any gap of an open bond.
 pub(super) const OPEN_GAP: f64 = 1e-6;
-/// The paper's outcomes: the steps at which the bond is open (true) or closed, s.
+/// The paper's outcomes: time steps, s, with true for an open bond and false for a closed one.
 const PAPER: [(f64, bool); 14] = [
     (1e-4, true),
     (2e-4, true),
@@ -29,19 +29,19 @@ const PAPER: [(f64, bool); 14] = [
     (6e-3, true),
     (1e-2, true),
 ];
-/// Below this step the outcome is no matter of phase, s.
+/// Below this time step the outcome does not depend on the phase, s.
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
 fn is_open(run: &MeasuredCase) -> bool {
     run.reading("first_gap") > OPEN_GAP
 }
 
-/// How many bonds are open, of how many.
+/// Number of open bonds, and number of all bonds.
 fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
     [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
 
-/// How many of the paper's outcomes are those of runs, one a Δt.
+/// Number of the paper's outcomes that the runs, one per Δt, reproduce.
 fn agreed(rows: &Measurements<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
         rows.0.iter().any(|run| run.at("dt") == step && is_open(run) == open)
@@ -49,7 +49,7 @@ fn agreed(rows: &Measurements<'_>) -> usize {
     PAPER.iter().filter(agrees).count()
 }
 
-/// What Fig. 8 hangs on: the paper's pattern with one choice changed at a time.
+/// Sensitivity of Fig. 8: the paper's pattern with one choice changed at a time.
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let all = studies.choices("cradle-choices")?;
@@ -88,7 +88,7 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }
 
-/// That a start distance at random has the paper's pattern, at the loosest stop of the study.
+/// The claim that a random start distance gives the paper's pattern, at the study's largest tolerance.
 fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
     let loosest = rows.values("tolerance").pop().unwrap_or(f64::NAN);
     let rows = rows.with("tolerance", loosest);
@@ -113,7 +113,8 @@ fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
 fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     let agreed = agreed(rows);
     Claim::new(
-        "§4: open at Δt = 1…6·10⁻⁴ s, closed at 7·10⁻⁴…3·10⁻³, open at 4·10⁻³, closed at 5·10⁻³, open at 6·10⁻³ and 10⁻²",
+        "§4: open at Δt = 1…6·10⁻⁴ s, closed at 7·10⁻⁴…3·10⁻³, open at 4·10⁻³, closed at 5·10⁻³, open at 6·10⁻³ and \
+            10⁻²",
         format!(
             "{agreed} of {} of these outcomes, from a start distance that was searched for",
             PAPER.len()
@@ -124,7 +125,7 @@ fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     .hanging_on("that search, the stop of 2.2·10⁻³ m/s, ρ = 0.2 (the paper states none), the cold start")
 }
 
-/// That the shock opens bonds at small Δt, at the tightest stop.
+/// The claim that the shock opens bonds at small Δt, at the smallest tolerance.
 fn shock_opens(rows: &Measurements<'_>) -> Claim {
     let tolerance = rows.values("tolerance")[0];
     let tight = rows.with("tolerance", tolerance);
@@ -174,12 +175,13 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     let claims = at_large_steps.into_iter().map(|(tolerance, large)| {
         let listed: Vec<String> =
             large.iter().map(|point| format!("{:.0} % at {}", 100.0 * point.y, point.x)).collect();
-        // Shown where the intervals of the two ends are apart.
+        // Accepted if the intervals of the two ends do not overlap.
         let ends = large.first().zip(large.last());
         let intervals = ends.and_then(|(first, last)| first.interval.zip(last.interval));
         let rises = intervals.is_some_and(|(first, last)| last.0 > first.1);
         Claim::new(
-            format!("Beyond the paper: at Δt ≥ 4·10⁻³ s, stopped at {tolerance:e} m/s, the share of lost bonds rises with Δt"),
+            format!("Beyond the paper: at Δt ≥ 4·10⁻³ s, stopped at {tolerance:e} m/s, the share of lost bonds \
+                rises with Δt"),
             format!("{} s", listed.join(", ")),
             rises.into(),
         )
@@ -190,13 +192,13 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig8-share", sheet, claims, table: None })
 }
 
-/// Open or closed → colour: open is orange, closed is blue.
+/// Colour of an outcome: orange for open, blue for closed.
 fn colour(value: f64) -> Rgb {
     if value > 0.5 { (240, 176, 80) } else { (70, 120, 175) }
 }
 
-/// The edges of cells around values that are evenly spaced in ratio. Neighbours share theirs to the
-/// last bit, so that no gap is drawn between them.
+/// The edges of cells around values with a constant ratio. Neighbours share their edge exactly, so no gap is drawn
+/// between them.
 pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     let half = match values {
         [first, second, ..] => (second / first).sqrt(),
@@ -208,7 +210,7 @@ pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     edges.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// The cradle's end over time step and stopping tolerance.
+/// The outcome of the cradle over time step and stopping tolerance.
 pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-map")?;
     let (steps, tolerances) = (rows.values("dt"), rows.values("tolerance"));
@@ -240,7 +242,7 @@ pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     };
     let (tight, loose) = (of_small(0.0, 1e-4), of_small(1e-3, 1.0));
     chart.layers.push(Layer::Cells { name: "open".into(), cells, colour });
-    // The capture speed Bond·g·Δt, where one step of cohesion cancels what the stop leaves over.
+    // The capture speed Bond·g·Δt, at which one step of cohesion cancels the error that the stopping tolerance allows.
     let scene = cradle();
     let capture = scene.parameters.bond * scene.gravity.magnitude();
     let line = [x.0, x.1].map(|step| (step, (capture * step).clamp(y.0, y.1)));

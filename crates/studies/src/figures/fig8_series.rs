@@ -1,4 +1,4 @@
-//! Fig. 8: where j goes after the shock, on the paper's axes; and what else the paper says of these runs.
+//! Fig. 8: the path of j after the shock, on the paper's axes, and the paper's other statements about these runs.
 
 use std::ops::RangeInclusive;
 
@@ -8,24 +8,23 @@ use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that are shown, s: both sides of the threshold, and steps at which the
-/// outcome is a matter of phase.
+/// Time steps that are shown, s: on both sides of the threshold, and steps whose outcome depends on the phase.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
-/// Where the paper's axes end, s and d.
+/// Ends of the paper's axes, s and d.
 const ENDS: (f64, f64) = (2.0, 5.0);
-/// The steps at which the paper has j leave with one velocity, s.
+/// Time steps at which, according to the paper, j leaves with one velocity, s.
 const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
-/// The steps at which the paper has k stay with i and j, s.
+/// Time steps at which, according to the paper, k stays with i and j, s.
 const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
-/// The step at which the paper has i catch up with j, s.
+/// Time step at which, according to the paper, i catches up with j, s.
 const CAUGHT_SECS: f64 = 5e-3;
-/// Ratio of the largest to the smallest of velocities that are one.
+/// Largest ratio of velocities that count as equal.
 const ONE_VELOCITY: f64 = 1.1;
-/// What verdicts on three discs hang on.
+/// Choices that affect the verdicts on three discs.
 const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \
                        cradle-choices";
 
-/// A row of a series: the time since k first touched i, s, and the places of i, j and k, in diameters.
+/// A row of a series: the time since k first touched i, s, and the positions of i, j and k, in diameters.
 type SeriesRow = (f64, [f64; 3]);
 
 struct DiscSeries {
@@ -33,7 +32,7 @@ struct DiscSeries {
     rows: Vec<SeriesRow>,
 }
 
-/// Between i and j, in diameters.
+/// Gap between i and j, in diameters.
 fn gap((_, [i, j, _]): &SeriesRow) -> f64 {
     j - i - 1.0
 }
@@ -47,7 +46,7 @@ impl DiscSeries {
         self.rows.last().is_some_and(|row| gap(row) > OPEN_GAP)
     }
 
-    /// True if j has come back from the farthest that it has been.
+    /// True if j has come back from its farthest position.
     fn turns_back(&self) -> bool {
         let farthest = self.after_shock().map(|(_, [_, j, _])| *j).fold(1.0, f64::max);
         self.rows.last().is_some_and(|(_, [_, j, _])| *j < farthest - OPEN_GAP)
@@ -77,7 +76,11 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     (near.y.from, near.y.to) = (1.0 - 0.05 * (highest - 1.0), 1.0 + 1.05 * (highest - 1.0));
     let mut far = chart(&runs, "the same on the paper's axes", 0.0, ENDS.0)?;
     (far.y.from, far.y.to) = (0.0, ENDS.1);
-    let caption = vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
+    let caption = vec![
+        "k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell \
+        its own."
+            .into(),
+    ];
     let sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption };
     let claims = vec![swings(&runs), caught(&runs), cluster(&runs), one_velocity(&runs)];
     let claims = claims.into_iter().map(|claim| claim.hanging_on(CHOICES)).collect();
@@ -93,7 +96,7 @@ fn chart(runs: &[DiscSeries], title: &str, from: f64, to: f64) -> Result<Chart> 
         let places = run.rows.iter().map(|(secs, [_, j, _])| (*secs, *j));
         let places = points(places.filter(|(secs, j)| (from..=to).contains(secs) && *j <= ENDS.1));
         let name = format!("Δt = {shown:e} s").replace('-', "−");
-        // Its curve is that of 1e-3 s as long as the bond holds in both.
+        // While the bond is closed in both, its curve coincides with that of 1e-3 s.
         let look = if shown == CAUGHT_SECS { Look::Dashes(3) } else { Look::Line(3) };
         chart.layers.push(Layer::curve(name, places, PALETTE[index], look));
     }
@@ -118,13 +121,13 @@ fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
         });
         rows.push((secs, [i, j, k].map(|place| place / diameter)));
     }
-    // Within a hundredth of a diameter: rows are further apart than the touch lasts.
+    // Within a hundredth of a diameter, because rows are further apart than the contact lasts.
     let shock_secs = rows.iter().find(|(_, [i, _, k])| i - k <= 1.01).map_or(0.0, |row| row.0);
     rows.iter_mut().for_each(|row| row.0 -= shock_secs);
     Ok(rows)
 }
 
-/// The runs with a Δt in a range, its ends among them.
+/// The runs with a Δt in a closed interval.
 fn between(runs: &[DiscSeries], steps: RangeInclusive<f64>) -> impl Iterator<Item = &DiscSeries> {
     runs.iter().filter(move |run| steps.contains(&run.step_secs))
 }

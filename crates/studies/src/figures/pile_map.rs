@@ -11,15 +11,15 @@ use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, points};
 use crate::error::Result;
 use crate::statistics::{Mean, mean, p_value};
 
-/// Slump that the scale of colours ends at.
+/// Slump at the end of the colour scale.
 const MOST: f64 = 0.55;
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
-/// Cohesive times from one over this to this are near 1.
+/// Factor around a cohesive time of 1 that counts as near 1.
 const NEAR: f64 = 3.0;
 const SHADES: u32 = 64;
 
-/// Slump → colour: dark is a pile that holds.
+/// Colour of a slump; dark for a pile that holds.
 fn colour(slump: f64) -> Rgb {
     use plotters::style::RGBColor;
     use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
@@ -36,7 +36,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let mut cells = Vec::new();
     let mut lowest = Vec::new();
     for (index, &bond) in bonds.iter().enumerate() {
-        // Counted from one end, so that neighbours share their edges to the last bit.
+        // Computed from one end, so that neighbours share their edges exactly.
         let edge = |number: usize| bonds[0] + half * (2.0 * number as f64 - 1.0);
         let of_bond = rows.with("bond", bond);
         let mut best = (f64::INFINITY, 0.0);
@@ -86,7 +86,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
 }
 
-/// Lines of equal cohesive time, each with its number, on axes that end there.
+/// Lines of constant cohesive time with their labels, clipped to the axes.
 fn contours(most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
     let mut layers = Vec::new();
     for time in CONTOURS {
@@ -116,8 +116,8 @@ fn scale() -> Chart {
     scale
 }
 
-/// By how much the slump is larger away from a cohesive time of 1 than near it, at the same state and Bond: a value
-/// a state, the mean over the Bonds that have Δt of both kinds.
+/// The slump away from a cohesive time of 1, minus that near it, at the same initial state and Bond number: one value
+/// per initial state, the mean over the Bond numbers with Δt of both kinds.
 fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     let of_group = |runs: &Alike| {
         let (near, away): (Vec<_>, Vec<_>) =
@@ -136,8 +136,8 @@ fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     groups.chunks(each).map(of_state).filter(|depth| depth.is_finite()).collect()
 }
 
-/// That slump is lower where the cohesive time is near 1 than away from it. Where the lowest slump of each Bond
-/// lies is not asked: without any effect of Δt that, too, is somewhere.
+/// The claim that slump is lower near a cohesive time of 1 than away from it. It does not use the position of the
+/// lowest slump of each Bond number, which exists even without any effect of Δt.
 fn claim(groups: &[Alike], states: usize) -> Claim {
     let depth = |groups: &[Alike]| mean(&depths(groups, states));
     let verdict = |depth: Mean| Verdict::of(depth.p_above(0.0), depth.p_below(0.0));
@@ -150,7 +150,8 @@ fn claim(groups: &[Alike], states: usize) -> Claim {
         p_value(depth(groups).p_above(0.0))
     );
     Claim::new(
-        "Beyond the paper: over the plane of Bond and Δt the slump is lower near a cohesive time of 1 than away from it",
+        "Beyond the paper: over the plane of Bond and Δt the slump is lower near a cohesive time of 1 than away \
+            from it",
         measured.replace('-', "−"),
         verdict(depth(groups)),
     )
@@ -162,7 +163,7 @@ fn claim(groups: &[Alike], states: usize) -> Claim {
 mod tests {
     use super::*;
 
-    /// Eight states at four Bonds, whose slump is lowest by `depth` at a cohesive time of `at`.
+    /// Eight initial states at four Bond numbers, whose slump is lower by `depth` near a cohesive time of `at`.
     fn plane(depth: f64, at: f64) -> Vec<Alike> {
         let of_group = |group: usize| {
             let run = |step: usize| {

@@ -1,4 +1,4 @@
-//! From simulation to figures, tables and report.
+//! Produces figures, tables and the report from simulations.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,18 +15,18 @@ use crate::solver::worst;
 const SNAPSHOTS: [&str; 3] = ["fig3", "fig4", "fig7"];
 const ALL: &str = "all";
 
-/// The names that [`reproduce`] knows.
+/// The names that [`reproduce`] accepts.
 pub fn figure_names() -> Vec<&'static str> {
     let charts = FIGURES.iter().map(|figure| figure.name);
     [ALL].into_iter().chain(SNAPSHOTS).chain(charts).collect()
 }
 
-/// Makes the figures of those names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies
-/// lie below it, so that the same call goes on where one was stopped. `snapshots` draws the pictures
-/// of grains, Fig. 3, 4 and 7, into a folder. The report says that `version` of the program made it.
+/// Produces the figures with these names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies are stored below
+/// it, so the same call resumes if it was stopped. `snapshots` draws the pictures of grains, Fig. 3, 4 and 7, into a
+/// folder. `version` is the program's version in the report.
 ///
 /// # Errors
-/// Where a name is unknown, the folder cannot be written, or a study fails.
+/// If a name is unknown, the folder cannot be written, or a study fails.
 pub fn reproduce(
     names: &[String],
     folder: &Path,
@@ -89,7 +89,7 @@ fn opening(effort: Effort) -> String {
     text
 }
 
-/// The part of the report about a figure, which is printed, too.
+/// The section of the report about a figure, which is also printed.
 fn section(info: &FigureInfo, figure: &Figure) -> String {
     let mut text = format!("\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
     // Writing to a string cannot fail.

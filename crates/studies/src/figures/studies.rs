@@ -1,4 +1,4 @@
-//! The studies that are shipped with the program, run when a figure needs them, and their rows.
+//! The studies that are shipped with the program. They run when a figure needs them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,11 +23,11 @@ const STUDIES: &[(&str, &str)] = shipped![
     "pile" "pile-compressive" "cradle-courses" "cradle-choices" "cradle-share" "cradle-map" "pile-map"
 ];
 
-/// A study whose runs are all there.
+/// A study with all its runs completed.
 pub(super) struct FinishedStudy {
     study: Study,
     pub table: RunsTable,
-    /// The runs that have a finite end: others have no numbers.
+    /// The runs with a finite final state; others have no values.
     ended: Vec<MeasuredCase>,
 }
 
@@ -39,7 +39,7 @@ impl FinishedStudy {
     }
 }
 
-/// The numbers of a run by name.
+/// The readings of a run by name.
 fn measured(config: &Config, result: &RunResult) -> MeasuredCase {
     let Config { source, parameters, solver, .. } = config;
     let at = [
@@ -59,12 +59,13 @@ fn measured(config: &Config, result: &RunResult) -> MeasuredCase {
     MeasuredCase { at, run: RunReadings { readings, ..RunReadings::default() }, wall_secs: 0.0 }
 }
 
-/// The runs whose initial states were not chosen for the pictures that they make.
+/// The runs with initial states that were not chosen for illustration.
 pub(super) fn ensemble<'a>(runs: &Measurements<'a>) -> Measurements<'a> {
     runs.such_that(|run| run.at("seed") != NewPile::default().seed as f64)
 }
 
-/// Two numbers of each run, rising by the first: a group for each state and Bond, the states one after the other.
+/// Two numbers of each run, sorted by the first, in one group per initial state and Bond number. The groups of an
+/// initial state are adjacent.
 pub(super) fn groups(
     runs: &Measurements<'_>,
     x: impl Fn(&MeasuredCase) -> f64,
@@ -102,7 +103,7 @@ impl StudyRunner {
         }
         let path = format!("{name}.toml");
         let study = Study::parse(text, path.as_ref(), self.effort == Effort::Quick)?;
-        // Results of an older program's study are of no use here: they are made anew.
+        // Results of a study by an older version of the program are discarded.
         let states = Some(self.folder.join("states"));
         let options = SweepOptions { redo: true, states, shard: None };
         let done = sweep(&study, &self.study_folder(name), &options)?;
@@ -111,7 +112,7 @@ impl StudyRunner {
         Ok(())
     }
 
-    /// The runs of a study that have a finite end.
+    /// The runs of a study that have a finite final state.
     pub(super) fn rows(&self, name: &str) -> Result<Measurements<'_>> {
         let found = self.finished.get(name);
         let found = found.ok_or_else(|| Error::value("study", name, "run before its figures"))?;
@@ -121,7 +122,8 @@ impl StudyRunner {
         Ok(Measurements(found.ended.iter().collect()))
     }
 
-    /// The runs of [`StudyRunner::rows`] by the settings in which they differ from the first of them, in their order.
+    /// The runs of [`StudyRunner::rows`], grouped by the settings in which they differ from the first run, in their
+    /// order.
     pub(super) fn choices(&self, name: &str) -> Result<Vec<(String, Measurements<'_>)>> {
         let rows = self.rows(name)?;
         let table = self.finished[name].table.rows.iter();
@@ -140,7 +142,7 @@ impl StudyRunner {
         Ok(parts)
     }
 
-    /// The series of a study's runs, each with its config: its file as text.
+    /// The series of a study's runs: each run's config and the text of its file.
     pub(super) fn series(&self, name: &str) -> Result<Vec<(Config, String)>> {
         let Some(FinishedStudy { study, .. }) = self.finished.get(name) else {
             return Ok(Vec::new());
@@ -153,12 +155,12 @@ impl StudyRunner {
         study.runs.iter().map(read).collect()
     }
 
-    /// Says of each claim of a figure how many runs of its studies raised which alarms.
+    /// Adds to each claim of a figure the number of runs of its studies that raised alarms, by kind.
     ///
-    /// A verdict is refused from the first run on that lost a grain or had no finite end, whatever the
-    /// number of the others: its slump is of another pile, or there is none, and which runs those are
-    /// hangs on Bond and Δt, so what is left is no fair sample. Other alarms (deep overlaps, steps that
-    /// were not solved as asked) are what a claim about Δt is about, and are counted alone.
+    /// A single run that lost a grain or had no finite end makes the verdict open, however many other runs there are.
+    /// Its slump is missing or belongs to a different pile, and such failures depend on Bond and Δt, so the remaining
+    /// runs are not a fair sample. Other alarms (deep overlaps, unsolved steps) are part of the effects that a claim
+    /// about Δt concerns; they are only counted.
     pub(super) fn qualify(&self, studies: &[&str], claims: &mut [Claim]) {
         let tables = studies.iter().filter_map(|name| self.finished.get(name));
         let results: Vec<&RunResult> =
@@ -181,7 +183,7 @@ impl StudyRunner {
         self.folder.join(self.effort.name()).join(name)
     }
 
-    /// A line for the caption of a figure of some studies, where one of them has run a quick pass.
+    /// A line for the caption of a figure if one of its studies was a quick pass.
     pub(super) fn note(&self, studies: &[&str]) -> Option<String> {
         let mut finished = studies.iter().filter_map(|name| self.finished.get(name));
         finished.any(|one| one.study.is_quick_pass).then(|| {
@@ -190,7 +192,7 @@ impl StudyRunner {
     }
 }
 
-/// The settings of a run that are other than those of the first one, but for Bond, Δt and the state.
+/// The settings in which a run differs from the first run, except Bond, Δt and the initial state.
 pub(super) fn changes(config: &Config, first: &Config) -> String {
     let settings = |config: &Config| serde_json::to_value(config).unwrap_or_default();
     let (here, first) = (settings(config), settings(first));
@@ -213,7 +215,7 @@ mod tests {
         RunResult { status, lost_grains, alarms, ..RunResult::of_slump(0.0) }
     }
 
-    /// A claim that holds, on those runs.
+    /// An accepted claim, qualified by these runs.
     fn qualified(results: &[&RunResult]) -> Claim {
         let mut studies = StudyRunner::new(PathBuf::new(), Effort::Quick);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";

@@ -1,6 +1,6 @@
-//! Two bodies. Fig. 2: the contact graph, Signorini's and shifted by the cohesion, with the lines N = K v̄ + A of the
-//! three cases; the dots where they meet are simulated. And the speed after one step against Δt (paper §2.2): theory
-//! as lines, simulation as points.
+//! Two bodies. Fig. 2 shows the contact graph, Signorini's and shifted by the cohesion, with the lines N = K v̄ + A of
+//! the three cases; the dots at their intersections are simulated. A second figure shows the speed after one step
+//! against Δt (paper §2.2): theory as lines, simulation as points.
 
 use glam::DVec2;
 
@@ -38,7 +38,7 @@ pub(super) fn fig2(_: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig2", sheet, claims: vec![claim], table: None })
 }
 
-/// The graph whose corner lies at N = −`shift`·C₀, and how far off it a simulated step lies at most.
+/// The graph with its corner at N = −`shift`·C₀, and the largest distance of a simulated step from it.
 fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     let scene = collision();
     let bond = scene.parameters.bond;
@@ -56,13 +56,13 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     for (number, (force, name)) in CASES.into_iter().enumerate() {
         let colour = PALETTE[[1, 3, 6][number]];
         let line = [-x_reach, x_reach].map(|v| (v, (1.0 + RESTITUTION) * v + force));
-        // Cut where the axes end.
+        // Clipped to the axes.
         let line = line.map(|(v, n)| {
             let cut = n.clamp(-y_reach, y_reach);
             (v + (cut - n) / (1.0 + RESTITUTION), cut)
         });
         chart.layers.push(Layer::curve(name, points(line), colour, Look::Line(2)));
-        // A = −m(1 + ρ) v^{n−1} / Δt where no other force acts.
+        // A = −m(1 + ρ) v^{n−1} / Δt without other forces.
         let before = -force * capture_speed / (1.0 + RESTITUTION);
         let (mass, n, after) = one_step(before, TIME_STEP_SECS, bond * shift)?;
         let formal = (after + RESTITUTION * before) / (1.0 + RESTITUTION) / capture_speed;
@@ -79,16 +79,16 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     Ok((chart, worst))
 }
 
-/// Restitution of the runs: large enough to be seen.
+/// Restitution of the runs, large enough to be visible.
 const RESTITUTION: f64 = 0.2;
 
-/// Opening speeds at the beginning of the step, m/s.
+/// Speeds of separation at the beginning of the step, m/s.
 const SPEEDS: [f64; 5] = [-0.02, 0.01, 0.02, 0.04, 0.06];
 const TIME_STEPS_SECS: (f64, f64) = (0.0, 0.012);
 const POINTS: u32 = 25;
 
-/// The state after one step of two free discs of different sizes that touch and part with `speed`.
-/// Returns their effective mass (kg), N (newton) and v^n (m/s).
+/// The state after one step of two free touching discs of different sizes that separate with `speed`. Returns their
+/// effective mass (kg), N (newton) and v^n (m/s).
 fn one_step(speed: f64, time_step_secs: f64, bond: f64) -> Result<(f64, f64, f64)> {
     let scene = collision();
     let (small, large) = (0.1, 0.2);
@@ -117,8 +117,8 @@ fn one_step(speed: f64, time_step_secs: f64, bond: f64) -> Result<(f64, f64, f64
     Ok((mass, force, grains.velocities[0].x - grains.velocities[1].x))
 }
 
-/// v^n by the three cases of §2.2, without other forces: −ρ v^{n−1} where the contact closes or
-/// bounces, v^{n−1} − ΔtC₀/m_ij where it opens.
+/// v^n by the three cases of §2.2, without other forces: −ρ v^{n−1} if the contact closes or bounces, v^{n−1} −
+/// ΔtC₀/m_ij if it opens.
 fn theory(speed: f64, capture_speed: f64) -> f64 {
     if speed * (1.0 + RESTITUTION) > capture_speed {
         speed - capture_speed

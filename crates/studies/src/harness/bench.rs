@@ -20,7 +20,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// A bench of this machine. `version` is the program's.
+    /// A bench on this machine. `version` is the program's version.
     pub(crate) fn new(folder: &Path, effort: Effort, version: &str) -> Result<Self> {
         check_writable("out", folder)?;
         Ok(Self { folder: folder.to_owned(), effort, machine: Machine::this(version)? })
@@ -30,7 +30,7 @@ impl Bench {
         self.folder.join("states")
     }
 
-    /// A runner of the measurements of this program on this machine. A quick pass has a journal of its own.
+    /// A runner of measurements by this program on this machine. A quick pass has its own journal.
     pub(crate) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         name: &str,
@@ -41,14 +41,14 @@ impl Bench {
         Runner::open(name, &folder, name)
     }
 
-    /// Lines below a chart, the last of which names machine, day and command.
+    /// Lines below a chart, the last of which gives machine, date and command.
     pub(crate) fn caption(&self, lines: &[&str]) -> Vec<String> {
         let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
         caption.push(format!("{}{}", self.effort.note(), self.machine.words()));
         caption
     }
 
-    /// Writes a sheet that `command` makes, and the tables behind it.
+    /// Writes a sheet, with the `command` that makes it, and its tables.
     pub(crate) fn write<'a>(
         &self,
         (name, sheet): (&str, &Sheet),
@@ -61,7 +61,7 @@ impl Bench {
         })
     }
 
-    /// Writes the report, and removes the drafts that kills have left.
+    /// Writes the report, and removes the drafts that killed processes left.
     pub(crate) fn finish(&self, name: &str, report: &str) -> Result<()> {
         let path = self.folder.join(name);
         write_file(&path, report.as_bytes())?;

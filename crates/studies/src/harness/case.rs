@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 /// One run of an experiment, before it is computed.
 pub(crate) struct Case<C> {
-    /// Tells it apart from all other cases of its journal.
+    /// Unique among all cases of its journal.
     pub key: String,
-    /// How long it may take, in any unit: for the order of work and for progress.
+    /// Expected duration, in any unit, for the order of work and for progress.
     pub cost: f64,
     pub setup: C,
 }

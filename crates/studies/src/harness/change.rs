@@ -1,4 +1,4 @@
-//! Changes of how scenes are stepped.
+//! Named changes of the settings of scenes.
 
 use crate::config::Config;
 use crate::scene::Scene;
@@ -6,7 +6,7 @@ use crate::setting::Changes;
 use crate::sim::Stepper;
 use crate::solver::SolverSettings;
 
-/// A change of the settings of scenes, and its name.
+/// A named change of settings.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
     pub name: String,
@@ -18,7 +18,7 @@ impl Change {
         Self { name: name.into(), config }
     }
 
-    /// A stepper, and all settings of its solver.
+    /// A change to a stepper, with all settings of its solver.
     pub(crate) fn of_solver(
         name: impl Into<String>,
         stepper: Stepper,
@@ -28,8 +28,8 @@ impl Change {
         Self::new(name, Config { stepper: Some(stepper), solver, ..Config::default() })
     }
 
-    /// Changes the settings of a scene, and leaves all others as they are. A scene without friction ignores a model of
-    /// friction.
+    /// Changes the settings of a scene that are given, and no others. A scene without friction ignores a friction
+    /// model.
     pub(crate) fn apply(&self, scene: &mut Scene) {
         if let Some(preset) = self.config.source.preset {
             preset.apply(scene);
@@ -46,7 +46,7 @@ impl Change {
         self.config.stepper.unwrap_or(Stepper::Moreau)
     }
 
-    /// The settings of the solver, if sweeps are changed by it.
+    /// The settings of the solver after this change, starting from those for sweeps.
     pub(crate) fn solver(&self) -> SolverSettings {
         let mut solver = SolverSettings::SWEEPS;
         self.config.solver.apply(&mut solver);

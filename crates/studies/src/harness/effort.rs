@@ -1,6 +1,6 @@
-//! How much an experiment computes.
+//! The extent of an experiment.
 
-/// A quick pass, with smaller systems and fewer of them, or the full one.
+/// A quick pass, with smaller and fewer systems, or the full pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effort {
     Quick,
@@ -12,7 +12,7 @@ impl Effort {
         if is_quick { Self::Quick } else { Self::Full }
     }
 
-    /// The value for a quick pass, or the one for the full pass.
+    /// The value for a quick pass or for the full pass.
     pub(crate) fn pick<T>(self, quick: T, full: T) -> T {
         match self {
             Self::Quick => quick,
@@ -20,17 +20,17 @@ impl Effort {
         }
     }
 
-    /// The name of its folder.
+    /// The name of the folder of its results.
     pub(crate) fn name(self) -> &'static str {
         self.pick("quick", "full")
     }
 
-    /// The option that asks for it, after a space.
+    /// The option for it, after a space.
     pub(crate) fn option(self) -> &'static str {
         self.pick(" --quick", "")
     }
 
-    /// What a caption says of a quick pass, before a space.
+    /// The note on a quick pass in captions, before a space.
     pub(crate) fn note(self) -> &'static str {
         self.pick("Quick pass. ", "")
     }

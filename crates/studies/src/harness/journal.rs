@@ -1,6 +1,6 @@
-//! Results as they come: a line of JSON a case, appended when the case ends, so that a program that is killed loses
-//! no finished case. Each line has a checksum. A half line at the end, which a kill can leave, is cut off; a damaged
-//! line is named and counts as not there. Other files have such a checksum, too.
+//! Journals of results: one line of JSON per case, appended when the case ends, so that a killed program loses no
+//! finished case. Each line has a checksum. An incomplete last line, which a kill can leave, is cut off; a damaged line
+//! is reported and ignored. Some other files have such a checksum, too.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -24,13 +24,12 @@ pub(crate) fn path_of(folder: &Path, name: &str) -> PathBuf {
 pub(crate) struct Journal {
     path: PathBuf,
     file: Mutex<File>,
-    /// Held as long as the journal is open.
+    /// The lock is kept as long as the journal is open.
     _lock: File,
 }
 
 impl Journal {
-    /// Opens a journal for appending and cuts off a half line at its end. Damaged lines are named and
-    /// blanked.
+    /// Opens a journal for appending and cuts off an incomplete last line. Damaged lines are reported and blanked.
     pub(crate) fn open(folder: &Path, name: &str) -> Result<Self> {
         let path = path_of(folder, name);
         let refuse = |error: std::io::Error| Error::file(&path, error);
@@ -54,10 +53,10 @@ impl Journal {
         let line = sealed_line(&line);
         let mut file = match self.file.lock() {
             Ok(file) => file,
-            // A thread that fell over between two lines leaves the file sound.
+            // A thread that panicked between two lines leaves the file intact.
             Err(poisoned) => poisoned.into_inner(),
         };
-        // One write a line: a kill between two leaves whole lines.
+        // One write per line: a kill between two writes leaves complete lines.
         file.write_all(line.as_bytes()).map_err(|error| Error::file(&self.path, error))
     }
 }
@@ -69,7 +68,7 @@ pub(crate) fn read_all<T: Serialize + DeserializeOwned>(
     let mut all: HashMap<String, FinishedCase<T>> = HashMap::new();
     for path in journals(folders)? {
         for case in read::<FinishedCase<T>>(&path)? {
-            // As they are written: what is not a number is not even equal to itself.
+            // Compared in their written form, because NaN is not equal to itself.
             let written = |case: &FinishedCase<T>| serde_json::to_string(&case.result).ok();
             if let Some(known) = all.get(&case.key)
                 && written(known) != written(&case)
@@ -83,7 +82,7 @@ pub(crate) fn read_all<T: Serialize + DeserializeOwned>(
     Ok(all)
 }
 
-/// The records of one journal. Damaged lines are named and left out.
+/// The records of one journal. Damaged lines are reported and left out.
 pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     let mut entries = Vec::new();
@@ -97,7 +96,7 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     Ok(entries)
 }
 
-/// The whole lines of a journal that are not blank, with their numbers from 1.
+/// The complete, non-blank lines of a journal, with their numbers from 1.
 fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').unwrap_or(0);
     let lines = bytes[..whole].split(|&byte| byte == b'\n').zip(1..);
@@ -111,14 +110,14 @@ fn note_damage(path: &Path, line: usize) {
     ));
 }
 
-/// Writes spaces over damaged lines, so that they are named once. Stopped midway it leaves what it was:
-/// damaged lines.
+/// Overwrites damaged lines with spaces, so that they are reported only once. If it is interrupted, the lines remain
+/// damaged.
 fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    // What is appended to cannot be written to elsewhere.
+    // A file that is open for appending can only be written at its end.
     let mut file = OpenOptions::new().write(true).open(path)?;
     for (number, line) in lines(bytes).filter(|(_, line)| record_of(line).is_none()) {
         note_damage(path, number);
-        // Both are parts of one allocation.
+        // Both are parts of the same allocation.
         let offset = line.as_ptr().addr() - bytes.as_ptr().addr();
         file.seek(SeekFrom::Start(offset as u64))?;
         file.write_all(&vec![b' '; line.len()])?;
@@ -136,7 +135,7 @@ pub(crate) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// The files and folders in a folder; none if it is missing.
+/// The files and folders in a folder; empty if it is missing.
 pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = match std::fs::read_dir(folder) {
         Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
@@ -149,7 +148,7 @@ pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
 /// The journals of a folder.
 ///
 /// # Errors
-/// Where another program is at one.
+/// If another program uses one of them.
 pub(crate) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     let paths = journals(&[folder.to_owned()])?;
     let is_in_use =
@@ -160,23 +159,23 @@ pub(crate) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     }
 }
 
-/// Hexadecimal digits of a checksum: 64 bits, far more than damage needs.
+/// Number of hexadecimal digits of a checksum. 64 bits are more than enough to detect damage.
 const DIGITS: usize = 16;
 const BEFORE: &str = "{\"checksum\":\"";
 const BETWEEN: &str = "\",\"record\":";
-/// What stands before the checksum at the end of a file whose comments begin with `#`.
+/// Text before the checksum at the end of a file whose comments begin with `#`.
 const COMMENT: &str = "# checksum ";
 
 pub(crate) fn checksum(text: &[u8]) -> String {
     blake3::hash(text).to_hex()[..DIGITS].to_owned()
 }
 
-/// A line of JSON around a record that is JSON.
+/// A line of JSON with a record, which is JSON, and its checksum.
 fn sealed_line(record: &str) -> String {
     format!("{BEFORE}{}{BETWEEN}{record}}}\n", checksum(record.as_bytes()))
 }
 
-/// The record of a line without its end; nothing where it is damaged.
+/// The record of a line without its line end; `None` if it is damaged.
 fn record_of(line: &[u8]) -> Option<&str> {
     let rest = str::from_utf8(line).ok()?.strip_prefix(BEFORE)?;
     let (found, rest) = rest.split_at_checked(DIGITS)?;
@@ -184,12 +183,12 @@ fn record_of(line: &[u8]) -> Option<&str> {
     (checksum(record.as_bytes()) == found).then_some(record)
 }
 
-/// A text with its checksum as a last line, a comment.
+/// A text with its checksum in a comment as the last line.
 pub(crate) fn sealed_text(text: &str) -> String {
     format!("{text}{COMMENT}{}\n", checksum(text.as_bytes()))
 }
 
-/// The text that was sealed; nothing where it is damaged.
+/// The text of a file written by [`sealed_text`]; `None` if it is damaged.
 pub(crate) fn text_of(bytes: &[u8]) -> Option<&str> {
     let (text, found) = str::from_utf8(bytes).ok()?.rsplit_once(COMMENT)?;
     (checksum(text.as_bytes()) == found.strip_suffix('\n')?).then_some(text)

@@ -1,4 +1,4 @@
-//! The processor, the day and the command of a measurement.
+//! The processor, date and command of a measurement.
 
 use std::time::SystemTime;
 
@@ -15,7 +15,7 @@ pub(crate) struct Machine {
     /// UTC, year-month-day.
     pub date: String,
     pub command: String,
-    /// Tells programs and processors apart: times of another one are no times of this one.
+    /// Identifies the program and the processor. Times with another fingerprint are not comparable.
     #[serde(skip)]
     pub fingerprint: String,
 }
@@ -28,7 +28,7 @@ impl Machine {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes);
         hasher.update(processor.as_bytes());
-        // What is no text stands there as far as it is one.
+        // Bytes that are not Unicode are replaced.
         let arguments = std::env::args_os().skip(1).map(|it| it.to_string_lossy().into_owned());
         let arguments = arguments.collect::<Vec<_>>().join(" ");
         Ok(Self {
@@ -55,7 +55,7 @@ fn date_of(now: SystemTime) -> String {
         .map_or_else(|_| unknown(), |now| now.strftime("%Y-%m-%d").to_string())
 }
 
-/// The name that Linux gives the processor, or its architecture.
+/// The processor's name according to Linux, or its architecture.
 fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let named = text.lines().find_map(|line| {

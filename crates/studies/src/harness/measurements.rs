@@ -1,10 +1,10 @@
-//! Numbers by which runs differ, and numbers that were measured of each run.
+//! Parameters of runs and the readings measured in them.
 
 use serde::{Deserialize, Serialize};
 
 use crate::number;
 
-/// A number that was measured.
+/// A measured number with its name.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Reading {
     pub name: String,
@@ -17,15 +17,15 @@ pub(crate) struct RunReadings {
     pub readings: Vec<Reading>,
     pub simulated_secs: f64,
     pub steps: u64,
-    /// Steps that were not solved as asked. With a number of sweeps nothing is asked but those.
+    /// Number of unsolved steps. It has no meaning if only a number of sweeps was requested.
     pub unsolved_steps: u64,
     pub lost_grains: u32,
-    /// True if its state was no longer finite; it has no readings then.
+    /// True if the state was no longer finite; the run then has no readings.
     pub blew_up: bool,
 }
 
 impl RunReadings {
-    /// A number that was measured; NaN if there is none of that name.
+    /// The reading with that name; NaN if there is none.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         let mut readings = self.readings.iter();
         readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
@@ -44,12 +44,12 @@ pub(crate) struct MeasuredCase {
 }
 
 impl MeasuredCase {
-    /// A number by which the case differs from others; NaN if there is none of that name.
+    /// The parameter with that name; NaN if there is none.
     pub(crate) fn at(&self, name: &str) -> f64 {
         self.at.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
     }
 
-    /// A number that was measured; NaN if there is none of that name.
+    /// The reading with that name; NaN if there is none.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.run.reading(name)
     }
@@ -59,7 +59,7 @@ impl MeasuredCase {
 pub(crate) struct Measurements<'a>(pub Vec<&'a MeasuredCase>);
 
 impl<'a> Measurements<'a> {
-    /// The different values of a number of the cases, rising.
+    /// The distinct values of a parameter of the cases, in ascending order.
     pub(crate) fn values(&self, name: &str) -> Vec<f64> {
         let values = self.0.iter().map(|case| case.at(name));
         let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
@@ -72,7 +72,7 @@ impl<'a> Measurements<'a> {
         self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
     }
 
-    /// A number of the first case; 0 if there is no case.
+    /// A parameter of the first case; 0 without cases.
     pub(crate) fn first(&self, name: &str) -> f64 {
         self.0.first().map_or(0.0, |case| case.at(name))
     }
@@ -93,12 +93,12 @@ impl<'a> Measurements<'a> {
         self.0.iter().map(|case| case.reading(name)).collect()
     }
 
-    /// A reading of the first case; NaN if there is no case.
+    /// A reading of the first case; NaN without cases.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.0.first().map_or(f64::NAN, |case| case.reading(name))
     }
 
-    /// Two numbers of each case, rising by the first.
+    /// Two numbers of each case, sorted by the first.
     pub(crate) fn rising(&self, point: impl Fn(&MeasuredCase) -> (f64, f64)) -> Vec<(f64, f64)> {
         let mut points = self.points(point);
         points.sort_by(|one, other| one.0.total_cmp(&other.0));

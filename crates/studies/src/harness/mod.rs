@@ -1,4 +1,4 @@
-//! The harness of all experiments: cases, their journal, the runner, the machine they are timed on, and reports.
+//! Common parts of all experiments: cases, their journal, the runner, the machine on which they are timed, and reports.
 
 mod bench;
 mod case;

@@ -1,4 +1,4 @@
-//! What studies leave beside their report: charts and tables.
+//! The files of a report: charts and tables.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::chart::{self, Sheet};
 use crate::error::{Error, Result};
 use crate::output::write_file;
 
-/// Writes a sheet of charts as `name.csv`, `.png` and `.svg`. The picture says which command made it.
+/// Writes a sheet of charts as `name.csv`, `.png` and `.svg`. The picture contains the command that made it.
 pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &str) -> Result<()> {
     let path = |ending: &str| folder.join(format!("{name}.{ending}"));
     write_file(&path("csv"), &sheet.to_csv()?)?;
@@ -14,7 +14,7 @@ pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &st
     write_file(&path("svg"), chart::svg(sheet)?.as_bytes())
 }
 
-/// The different ones of some values, in their order.
+/// The distinct values of an iterator, in order.
 pub(crate) fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     let mut kept: Vec<T> = Vec::new();
     for one in all {
@@ -25,7 +25,7 @@ pub(crate) fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     kept
 }
 
-/// Numbers that a figure's claims rest on.
+/// The numbers behind the claims of a figure.
 pub(crate) struct ReportTable {
     pub name: String,
     pub columns: Vec<&'static str>,
@@ -33,7 +33,7 @@ pub(crate) struct ReportTable {
 }
 
 impl ReportTable {
-    /// A table with these columns, whose names have spaces between them.
+    /// A table with these columns; `columns` contains their names, separated by spaces.
     pub(crate) fn new(
         name: impl Into<String>,
         columns: &'static str,

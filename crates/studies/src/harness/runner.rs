@@ -1,5 +1,5 @@
-//! One runner for all experiments: it runs the cases that are not finished yet, keeps each result in a journal as
-//! it comes, and gives all results in the order of the cases.
+//! The runner of all experiments. It runs the unfinished cases, writes each result to a journal at once, and returns
+//! all results in the order of the cases.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,14 +15,14 @@ use super::journal::{self, Journal};
 use crate::error::Result;
 use crate::output::{Progress, note_line};
 
-/// Lines that report progress where there is no terminal to draw a bar on.
+/// Number of progress lines if there is no terminal to draw a bar on.
 const LINES_OF_PROGRESS: usize = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Threads {
-    /// As many as there are threads, the longest first, so that no thread waits long for the last one.
+    /// As many cases at a time as there are threads, the longest first, so that no thread waits long for the last case.
     All,
-    /// One after the other, for what is timed.
+    /// One case at a time, for timing.
     One,
 }
 
@@ -33,9 +33,10 @@ pub(crate) struct Runner<T> {
 }
 
 impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
-    /// A runner with a journal in `folder` that goes on where the journal ends, and says so.
+    /// A runner that resumes after the last line of a journal in `folder`, and reports the number of results found
+    /// there.
     pub(crate) fn open(name: &str, folder: &Path, journal_name: &str) -> Result<Self> {
-        // Opening cuts off a half line, so it comes first.
+        // Opening cuts off an incomplete line, so it comes first.
         let journal = Journal::open(folder, journal_name)?;
         let finished = journal::read(&journal::path_of(folder, journal_name))?;
         if !finished.is_empty() {
@@ -45,7 +46,7 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Ok(Self::new(name, journal, finished.into_iter().map(by_key).collect()))
     }
 
-    /// A runner that adds to `journal`. Cases that are `finished` are not run again.
+    /// A runner that appends to `journal`. Cases in `finished` are not run again.
     pub(crate) fn new(
         name: &str,
         journal: Journal,
@@ -58,7 +59,7 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         self.finished.contains_key(key)
     }
 
-    /// Runs the cases that are not finished, and gives all of them in their order.
+    /// Runs the unfinished cases, and returns all cases in order.
     pub(crate) fn run<C: Sync>(
         &self,
         cases: &[Case<C>],
@@ -98,7 +99,7 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Ok(results.into_iter().flatten().collect())
     }
 
-    /// The result of a case that depends on others, so that it cannot be one of many: from the journal, or computed.
+    /// The result of a single case, from the journal or computed, for a case that depends on other results.
     pub(crate) fn result(
         &self,
         key: &str,

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 
-/// Part `index` of `count`, counted from 1. Every count-th run belongs to it, so that cheap and dear
-/// runs are dealt out evenly.
+/// Part `index` of `count`, counted from 1. It contains every count-th run, so that cheap and expensive runs are
+/// distributed evenly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// From 1 to `count`.
@@ -13,12 +13,12 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// True if the run of that number belongs to this part.
+    /// True if run number `run` belongs to this part.
     pub(crate) fn has(self, run: usize) -> bool {
         run % self.count == self.index - 1
     }
 
-    /// The name of its journal, if `of` is the name of the whole journal.
+    /// The name of the part's journal; `of` is the name of the whole journal.
     pub(crate) fn journal(self, of: &str) -> String {
         format!("{of}-{}-of-{}", self.index, self.count)
     }

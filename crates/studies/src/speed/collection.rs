@@ -1,5 +1,5 @@
-//! Steps of piles, collected for comparing methods: each is a simulation that stands just before the
-//! step, with the impulses that a warm start takes over.
+//! Collected steps of piles for comparing methods. Each is a simulation just before the step, with the impulses of a
+//! warm start.
 
 use std::path::Path;
 
@@ -17,8 +17,8 @@ use crate::solver::{FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::states::States;
 use crate::world::ParameterChanges;
 
-/// How the piles get to the steps that are collected: far better solved than any claim about a pile
-/// needs, so that a collection does not favour the errors of the methods it is to compare.
+/// Settings with which piles are advanced to the collected steps. They are much tighter than any claim about a pile
+/// needs, so that a collection does not favour the errors of one of the compared methods.
 const ADVANCE: SolverSettings = SolverSettings {
     method: Method::Newton,
     ordering: Ordering::Interleaved,
@@ -30,35 +30,35 @@ const ADVANCE: SolverSettings = SolverSettings {
     model_solves: 1,
 };
 
-/// Width of a box over the root of the number of its grains, in diameters: 16 for 138.
+/// Width of a box divided by the square root of the number of grains, in diameters: 16 for 138.
 const WIDTH_BY_ROOT: f64 = 1.35;
 
-/// Which steps to collect: each time of each pile, a pile for every Bond number and time step.
+/// The steps to collect: each time of each pile, with one pile for every Bond number and time step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CollectionPlan {
     pub bonds: Vec<f64>,
     /// Δt, s.
     pub time_steps_secs: Vec<f64>,
-    /// Simulated times at which the steps begin, s, rising.
+    /// Simulated times at which the steps begin, s, in ascending order.
     pub times_secs: Vec<f64>,
-    /// Seeds of the initial states, dealt out to the piles in turn.
+    /// Seeds of the initial states, assigned to the piles in turn.
     pub seeds: Vec<u64>,
     pub grains: usize,
-    /// Width of the box that the piles are made in, in diameters.
+    /// Width of the box in which the piles are made, in diameters.
     pub box_width_in_diameters: f64,
     pub deposition: Deposition,
-    /// True if the walls of the box stay, so that the piles are at rest.
+    /// True if the walls of the box remain, so that the piles are at rest.
     pub in_a_box: bool,
     pub advance: SolverSettings,
-    /// Contacts slower than this many g·Δt do not bounce; 0 in the paper's scheme.
+    /// Contacts slower than this, in units of g·Δt, do not bounce; 0 in the paper's scheme.
     pub restitution_threshold: f64,
-    /// That of the scene if not given.
+    /// Coefficient of friction; `None` for that of the scene.
     pub friction: Option<f64>,
 }
 
 impl CollectionPlan {
-    /// 48 steps (24 in a quick pass) of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
-    /// and rest.
+    /// 48 steps (24 in a quick pass) of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its
+    /// end, and rest.
     pub(super) fn piles(restitution_threshold: f64, effort: Effort) -> Self {
         let rain = NewPile::default();
         Self {
@@ -76,16 +76,16 @@ impl CollectionPlan {
         }
     }
 
-    /// Steps at Δt = 1e-3 s of piles without cohesion and with, made quickly, as steep as that of 138 grains: beginning to
-    /// slump or, in their box, at rest. They stand in runs whose every step was solved within bounds of friction, so
-    /// that what a warm start takes over is the error of no method.
+    /// Steps at Δt = 1e-3 s of piles without cohesion and with it. The piles are made quickly and are as steep as that
+    /// of 138 grains. They begin to slump or, in their box, are at rest. Every step before was solved with bounded
+    /// friction (Tresca), so that the impulses of a warm start contain no error of a compared method.
     pub(super) fn of_size(grains: usize, in_a_box: bool, effort: Effort) -> Self {
         let times_secs = match in_a_box {
             true => effort.pick(vec![5e-3], vec![1e-2, 2e-2]),
             false => effort.pick(vec![2e-2], vec![3e-2, 0.1]),
         };
         Self {
-            // The second one is felt, and yet lets a pile of any size slump.
+            // The second value has an effect, but still lets a pile of any size slump.
             bonds: vec![0.0, 10.0],
             time_steps_secs: vec![1e-3],
             times_secs,
@@ -118,14 +118,15 @@ impl CollectionPlan {
         let friction = friction.map_or(String::new(), |it| format!(", μ {it}"));
         let name = |[bond, step, time]: [f64; 3]| {
             format!(
-                "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time}, threshold {restitution_threshold}"
+                "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time}, threshold \
+                    {restitution_threshold}"
             )
         };
         self.steps().into_iter().map(name).collect()
     }
 
-    /// A pile for every Bond number and time step. Going on by one in both, no time step and no
-    /// Bond number meets one state alone.
+    /// One pile for every Bond number and time step. The seed advances with both, so that every time step and every
+    /// Bond number occurs with several initial states.
     fn configs(&self) -> Vec<Config> {
         let mut configs = Vec::new();
         for (row, &bond) in self.bonds.iter().enumerate() {
@@ -151,9 +152,9 @@ impl CollectionPlan {
     }
 }
 
-/// Collects the steps of a plan, pile after pile, on all cores: the simulations just before them, in the order of their
-/// names; `next_problem` gives their problems. Initial states are kept in
-/// `states_folder`. The same plan gives the same steps to the last bit.
+/// Collects the steps of a plan, pile by pile, on all cores: the simulations just before them, in the order of their
+/// names. `next_problem` gives their problems. Initial states are stored in `states_folder`. The same plan gives
+/// bitwise the same steps.
 pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Simulation>> {
     let configs = plan.configs();
     let states = States::of(states_folder.to_owned(), configs.iter())?;
@@ -188,7 +189,7 @@ pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
     Ok(piles?.into_iter().flatten().collect())
 }
 
-/// The result of each step of a plan: computed, or from the journal of that name.
+/// Computes a result for each step of a plan, or reads it from the journal of that name.
 pub(super) fn over_steps<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
     bench: &Bench,
     journal: &str,

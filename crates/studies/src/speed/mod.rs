@@ -1,9 +1,9 @@
-//! Speed charted against accuracy: of single steps, small and large, and of whole simulations. Every method of
-//! the registry is on every chart.
+//! Charts of speed against accuracy: of single steps, small and large, and of whole simulations. Every method of the
+//! registry is on every chart.
 //!
-//! The folder of a chart holds pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and
-//! `measured/`: journals of what was measured, by program and processor, so that the same command
-//! goes on where it was stopped and never mixes times of different programs.
+//! The folder of a chart contains pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and `measured/`
+//! with journals of measurements by program and processor. The same command therefore resumes if it was stopped, and
+//! never mixes times of different programs.
 
 mod collection;
 mod performance;
@@ -55,14 +55,14 @@ struct ChartSection {
     name: String,
     sheet: Sheet,
     words: String,
-    /// The first is a part of the report.
+    /// The first table is a part of the report.
     tables: Vec<ReportTable>,
 }
 
-/// Measures and draws into a folder. The charts say that `version` of the program made them.
+/// Measures, and draws charts into a folder. `version` is the program's version in the charts.
 ///
 /// # Errors
-/// Where the folder cannot be written, or a simulation fails.
+/// If the folder cannot be written, or a simulation fails.
 pub fn chart_speed(options: &ChartOptions, version: &str) -> Result<()> {
     let bench = Bench::new(&options.out, Effort::new(options.quick), version)?;
     let is_wanted = |part| match part {

@@ -1,13 +1,13 @@
-//! How methods are compared over many problems, some of which some methods fail on: means with failures.
+//! Comparison of methods over many problems, some of which some methods fail to solve: means with failures.
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Timing {
-    /// Until it was solved or given up, s.
+    /// Time until it was solved or stopped, s.
     pub secs: f64,
     pub solved: bool,
 }
 
-/// exp of the mean of logarithms; `None` of nothing.
+/// Geometric mean; `None` without values.
 pub(super) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for value in values {
@@ -22,8 +22,8 @@ pub(super) fn share_solved(timings: &[Timing]) -> f64 {
     solved as f64 / timings.len().max(1) as f64
 }
 
-/// How many times as fast one method is as another, as a geometric mean over the problems that the method solves. Where the base failed, the time after which it gave up
-/// counts, which is a lower bound of what it would need.
+/// Ratio of the speeds of a method and a base method, as a geometric mean over the problems that the method solves. If
+/// the base method failed, the time until it stopped counts, which is a lower bound of the time that it would need.
 pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> Option<f64> {
     let pairs = base.iter().zip(method).filter(|(_, method)| method.solved);
     geometric_mean(pairs.map(|(base, method)| base.secs / method.secs))

@@ -1,4 +1,4 @@
-//! How many solutions the steps of piles have under Coulomb's law, and how far apart they are.
+//! Number of solutions that the steps of piles have under Coulomb's law, and distances between them.
 
 use super::collection::{CollectionPlan, over_steps};
 use super::solves::{ReferenceSearch, References};
@@ -12,12 +12,12 @@ const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
 /// Δt, s.
 const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.9];
-/// A distance is drawn no lower, √(g d).
+/// Smallest distance in the chart, √(g d).
 const LEAST_DISTANCE: f64 = 1e-6;
-/// Curves of Bonds stand so far aside, as a factor of the number of grains.
+/// Horizontal offset between the curves of Bond numbers, as a factor of the number of grains.
 const ASIDE: f64 = 1.12;
 
-/// What was found of a step.
+/// Result of the search on one step.
 struct SearchedStep {
     friction: f64,
     grains: usize,
@@ -27,7 +27,7 @@ struct SearchedStep {
     found: References,
 }
 
-/// Plans of one size and kind each, with their names.
+/// Plans, each for one size and kind, with their names.
 fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
     let sizes: &[(usize, &[f64])] = match effort {
         Effort::Quick => &[(138, &[0.1])],
@@ -54,13 +54,13 @@ fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
     plans
 }
 
-/// How they are looked for.
+/// Settings of the search.
 fn search(effort: Effort) -> SolutionSearch {
     let max_sweeps = effort.pick(5_000, 20_000);
     SolutionSearch { starts: 4, seed: 1, max_sweeps, tolerance: 1e-10 }
 }
 
-/// Searches all steps, some at a time, and draws how far apart the solutions are.
+/// Searches all steps, some in parallel, and charts the distances between the solutions.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let search = search(bench.effort);
     let mut all = Vec::new();
@@ -128,7 +128,8 @@ fn sheet(bench: &Bench, all: &[SearchedStep]) -> Sheet {
     }
     let caption = bench.caption(&[
         &format!(
-            "A ring a step, at the largest distance of two of its solutions; those of one solution at the lower edge. μ = {}; Δt = {} s.",
+            "A ring a step, at the largest distance of two of its solutions; those of one solution at the lower \
+                edge. μ = {}; Δt = {} s.",
             listed(FRICTIONS, |it| it.to_string()),
             listed(TIME_STEPS_SECS, |it| format!("{it:e}"))
         ),

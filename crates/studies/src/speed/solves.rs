@@ -1,4 +1,4 @@
-//! Solves of single steps against the clock, with more and more sweeps: how far the velocities then are from those of a
+//! Timed solves of single steps with an increasing number of sweeps, and the distance of their velocities from a
 //! solution of Coulomb's law.
 
 use std::time::Instant;
@@ -16,41 +16,42 @@ use crate::solver::{
     solve, velocities, velocity_error, worst,
 };
 
-/// Least number of solves that a time is the minimum of.
+/// Least number of solves over which a time is minimised.
 pub(super) const LEAST_REPEATS: usize = 3;
-/// Short solves are repeated more often, up to this sum of times, s, or [`MOST_REPEATS`].
+/// Short solves are repeated more often, up to this total time, s, or [`MOST_REPEATS`].
 const ENOUGH_SECS: f64 = 2e-3;
-/// See [`ENOUGH_SECS`].
+/// Largest number of repeats; see [`ENOUGH_SECS`].
 const MOST_REPEATS: usize = 12;
-/// A solve that takes longer is not repeated, s: what disturbs it averages out.
+/// A solve that takes longer than this, s, is not repeated, because disturbances average out.
 pub(super) const LONG_SOLVE_SECS: f64 = 0.1;
-/// Most sweeps of a solve, whatever its time.
+/// Largest number of sweeps of a solve, whatever its time.
 const MOST_SWEEPS: u32 = 1 << 20;
-/// From one solve to the next the sweeps grow by this.
+/// Factor of the number of sweeps from one solve to the next.
 const GROWTH: u32 = 2;
 
-/// The solutions of a step under Coulomb's law that errors are distances to.
+/// The solutions of a step under Coulomb's law, from which errors are measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct References {
-    /// Velocities of all grains, of each solution.
+    /// Velocities of all grains in each solution.
     #[serde(skip)]
     velocities: Vec<Vec<[f64; 3]>>,
     pub found: usize,
-    /// The largest distance of two of them, √(g d).
+    /// The largest distance between two of them, √(g d).
     pub spread: f64,
-    /// How far the one that is known worst is estimated to be from a solution, √(g d).
+    /// Estimated distance of the least accurate reference from a solution, √(g d).
     #[serde(with = "number")]
     pub told: f64,
-    /// The largest of their residuals.
+    /// The largest residual.
     #[serde(with = "number")]
     pub residual: f64,
 }
 
-/// Looks for the solutions of the next step of a simulation.
+/// Searches for the solutions of the next step of a simulation.
 pub(super) struct ReferenceSearch(pub SolutionSearch);
 
 impl References {
-    /// Smaller errors, √(g d), tell solutions apart, or the references from solutions, and not methods.
+    /// The error, √(g d), below which methods cannot be compared: smaller errors only distinguish the solutions from
+    /// each other, or the references from the solutions.
     pub(super) fn floor(&self) -> f64 {
         self.spread.max(self.told)
     }
@@ -77,23 +78,23 @@ impl ProblemVisitor for ReferenceSearch {
     }
 }
 
-/// A solve with so many sweeps at most.
+/// A solve with a limited number of sweeps.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct TimedSolve {
     pub sweeps: u32,
     /// Least time, s.
     pub secs: f64,
-    /// Distance of the velocities to the nearest solution of Coulomb's law that is known, √(g d).
+    /// Distance of the velocities to the nearest known solution of Coulomb's law, √(g d).
     #[serde(with = "number")]
     pub error: f64,
 }
 
-/// What one method comes to on one step, with more and more sweeps.
+/// Results of one method on one step, by increasing number of sweeps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct TimedSolves(pub Vec<TimedSolve>);
 
 impl TimedSolves {
-    /// Until an error was reached.
+    /// Time until an error was reached.
     pub(super) fn timing(&self, error: f64) -> Timing {
         let reached = self.0.iter().find(|effort| effort.error <= error);
         let secs = |solve: &TimedSolve| solve.secs;
@@ -103,24 +104,24 @@ impl TimedSolves {
         }
     }
 
-    /// The solve of that number, or the last one, which more sweeps change no more.
+    /// Solve number `number`, or the last solve, which more sweeps would not change.
     pub(super) fn effort(&self, number: usize) -> Option<TimedSolve> {
         self.0.get(number).or(self.0.last()).copied()
     }
 }
 
-/// Times the solves of one step, each from the same start, until one ends by itself or takes too long. Copies of the
-/// problem are made outside of the clock.
+/// Times the solves of one step, each from the same initial guess, until one ends by itself or takes too long. Copies
+/// of the problem are not timed.
 pub(super) struct SolveTimer<'a> {
     pub variant: &'a Change,
     pub references: &'a References,
-    /// A solve that takes longer is the last one, s.
+    /// A solve that takes longer than this, s, is the last one.
     pub limit_secs: f64,
 }
 
 impl SolveTimer<'_> {
     pub(super) fn time(self, simulation: &Simulation) -> Result<TimedSolves> {
-        // The method decides on the order of the problem's rows.
+        // The method determines the order of the problem's rows.
         let mut simulation = simulation.clone();
         simulation.set_solver(self.variant.sweeps(1))?;
         Ok(simulation.next_problem(self))
@@ -148,7 +149,7 @@ impl SolveTimer<'_> {
         (effort, has_ended)
     }
 
-    /// √(g d).
+    /// Distance to the nearest reference, √(g d).
     fn error<M: Model>(&self, solved: &StepProblem<M>) -> f64 {
         let all = self.references.velocities.iter();
         let distances = all.map(|reference| distance_to_velocities(solved, reference));
@@ -173,7 +174,7 @@ impl ProblemVisitor for SolveTimer<'_> {
     }
 }
 
-/// Seconds of one solve of a copy, what it came to, and its sweeps.
+/// Time of one solve of a copy, s, the solved copy, and its sweeps.
 fn timed<M: Model>(
     problem: &StepProblem<M>,
     settings: &SolverSettings,

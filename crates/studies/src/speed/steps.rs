@@ -1,4 +1,4 @@
-//! Speed against accuracy of single steps: distance to Coulomb's law against time.
+//! Speed against accuracy of single steps: distance from Coulomb's law against time.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,38 +14,38 @@ use crate::error::Result;
 use crate::harness::{Change, Effort, ReportTable, Threads};
 use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 
-/// Threshold of restitution with which nearly every step has a solution.
+/// Restitution threshold at which nearly every step has a solution.
 const THRESHOLD: f64 = 2.0;
-/// √(g d).
+/// Errors for which times are reported, √(g d).
 const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
-/// Errors below it, √(g d), are drawn there.
+/// Smallest error in the chart, √(g d).
 const LEAST_ERROR: f64 = 1e-8;
 const BAND: Rgb = (225, 225, 225);
 
-/// How the solutions of a step are looked for. With more starts more of them are found.
+/// Settings of the search for the solutions of a step. More initial guesses find more solutions.
 const SEARCH: SolutionSearch =
     SolutionSearch { starts: 4, seed: 1, max_sweeps: 30_000, tolerance: 1e-12 };
 
-/// One step: its solutions, and what every variant comes to.
+/// One step: its solutions, and the results of every variant.
 #[derive(Clone, Serialize, Deserialize)]
 struct TimedStep {
     references: References,
     solves: Vec<TimedSolves>,
 }
 
-/// A collection of steps, and what every variant made of it.
+/// A collection of steps, with the results of every variant.
 struct TimedCollection {
     title: String,
-    /// Most time of a solve, s.
+    /// Time limit of a solve, s.
     limit_secs: f64,
     problems: Vec<String>,
     variants: Vec<Change>,
     steps: Vec<TimedStep>,
 }
 
-/// Times all variants over steps of 138 grains.
+/// Times all variants on steps of 138 grains.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer =
@@ -67,7 +67,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
 
-/// Times all variants over steps of piles of all sizes, which begin to slump or rest in their box.
+/// Times all variants on steps of piles of all sizes, which begin to slump or rest in their box.
 pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer = CollectionTimer { variants: with_bounds(variants::of_problems(false)) };
@@ -87,7 +87,7 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(sections)
 }
 
-/// Bounds of friction as well, by sweeps and by the interior point.
+/// Adds bounded friction (Tresca), by sweeps and by the interior-point method.
 fn with_bounds(mut variants: Vec<Change>) -> Vec<Change> {
     let models = variants::models().into_iter();
     variants.extend(models.filter(|one| one.solver().friction_model == FrictionModel::Tresca));
@@ -99,7 +99,7 @@ struct CollectionTimer {
 }
 
 impl CollectionTimer {
-    /// Times every variant on every step, one after the other, except the steps that the journal of that name has.
+    /// Times every variant on every step, sequentially, except the steps that are already in the journal.
     fn time(
         &self,
         bench: &Bench,
@@ -141,12 +141,12 @@ impl TimedCollection {
         self.steps.iter().map(|step| step.solves[variant].timing(error)).collect()
     }
 
-    /// The median over the steps of what each step's references have.
+    /// The median over the steps of a number of each step's references.
     fn of_references(&self, number: fn(&References) -> f64) -> f64 {
         median(self.steps.iter().map(|step| number(&step.references)).collect())
     }
 
-    /// Median time, ms, and median error of each effort of a variant.
+    /// Median time, ms, and median error of each number of sweeps of a variant.
     fn medians(&self, variant: usize) -> Vec<(f64, f64)> {
         let solves = || self.steps.iter().map(|step| &step.solves[variant]);
         let longest = solves().map(|solves| solves.0.len()).max().unwrap_or(0);
@@ -159,7 +159,7 @@ impl TimedCollection {
         (0..longest).map(point).collect()
     }
 
-    /// What a family comes to at best for its time: time, ms, and error, the dearest last.
+    /// The smallest error of a family for its time: time, ms, and error, the most expensive last.
     fn front(&self, family: Family) -> Vec<(f64, f64)> {
         let its = (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
         let all: Vec<(f64, f64)> = its.flat_map(|one| self.medians(one)).collect();
@@ -168,7 +168,7 @@ impl TimedCollection {
     }
 }
 
-/// Of an even number the larger of the two in the middle; of nothing 0.
+/// The median; for an even count the larger of the two middle values, for none 0.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
@@ -183,7 +183,7 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
         let most = times().fold(0.0, f64::max).max(10.0 * least);
         let mut chart = Chart::new(
             timed.title.clone(),
-            // Room for the names of curves.
+            // Space for the names of curves.
             Axis::log("time of a step (ms)", 0.7 * least, 12.0 * most),
             Axis::log("error against Coulomb's law, √(g d)", 0.5 * LEAST_ERROR, 3.0),
         );
@@ -216,7 +216,7 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
     Sheet { size: (500 * charts.len().max(2) as u32, 600), charts, caption }
 }
 
-/// How the steps were timed, and how many solutions those of each collection have.
+/// Describes how the steps were timed, and the number of solutions in each collection.
 fn words(all: &[TimedCollection]) -> String {
     let mut lines = vec![format!(
         "Errors are distances of velocities to the nearest of the solutions that {} starts led to, in √(g d). Times are \
@@ -244,7 +244,7 @@ fn words(all: &[TimedCollection]) -> String {
     lines.join("\n")
 }
 
-/// What each variant comes to.
+/// Results of each variant.
 fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
     let columns = "collection method error share_reached mean_ms ratio_to_nsgs_at_least";
     let mut rows = Vec::new();

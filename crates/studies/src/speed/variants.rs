@@ -1,26 +1,27 @@
-//! The solver variants that are charted: every method of the registry with its settings.
+//! The charted solver variants: every method of the registry with its settings.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::harness::{Change, distinct};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
-/// Methods that do alike, which share a curve on a chart: seven tell more than eighteen.
+/// Families of similar methods. Each shares one curve on a chart, because seven curves are easier to read than
+/// eighteen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
-    /// What is taken if nothing is asked for.
+    /// The default solver.
     Default,
-    /// Row after row.
+    /// Row-by-row sweeps.
     Sweeps,
-    /// By products with the whole problem alone.
+    /// First-order methods: only products with the whole problem.
     FirstOrder,
-    /// By factorisations, on Coulomb's law.
+    /// Methods with factorisations, for Coulomb's law.
     Newton,
-    /// A convex problem in the place of Coulomb's law.
+    /// Methods that solve a convex problem instead of Coulomb's law.
     Convex,
     /// The law of finite range.
     Range,
-    /// Springs or penalties in place of a problem.
+    /// Springs or penalties instead of a contact problem.
     Penalties,
 }
 
@@ -35,7 +36,7 @@ impl Family {
         Self::Penalties,
     ];
 
-    /// What a chart calls it.
+    /// Name in charts.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Default => "default",
@@ -54,7 +55,7 @@ impl Family {
     }
 }
 
-/// Which of these variants are of which family, for captions.
+/// The members of each family among these variants, for captions.
 pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) -> String {
     let of = |family: Family| {
         let its = variants.clone().filter(|variant| variant.family() == family);
@@ -65,12 +66,12 @@ pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) ->
     format!("{}.", all.join("; "))
 }
 
-/// Steppers that solve no problem by a method: variants by themselves.
+/// Steppers that use no solver method; each is a variant.
 fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }
 
-/// Every method of the registry, in its order, and every stepper without one.
+/// Every method of the registry, in its order, and every stepper without a method.
 pub(super) fn all() -> Vec<Change> {
     let mut variants = of_problems(false);
     let of = |stepper: Stepper| Change::of_solver(stepper.name(), stepper, &SolverSettings::SWEEPS);
@@ -82,12 +83,12 @@ pub(super) fn of_method(method: Method) -> Change {
     of_model(method, FrictionModel::Coulomb)
 }
 
-/// What solves a step if nothing is asked for: Coulomb's law, to a velocity error.
+/// The default solver: Coulomb's law, to a velocity error.
 pub(super) fn default() -> Change {
     Change::of_solver("default", Stepper::Moreau, &SolverSettings::default())
 }
 
-/// Those that solve the problem of a step, and Gauss–Seidel in its other orders where `orders` are asked for.
+/// The variants that solve a step's contact problem; with `orders`, also Gauss–Seidel in its other orders.
 pub(super) fn of_problems(orders: bool) -> Vec<Change> {
     let own = METHODS.iter().map(|info| info.method).filter(|method| *method != Method::Auto);
     let mut variants: Vec<Change> = own.map(of_method).chain([default()]).collect();
@@ -102,13 +103,13 @@ pub(super) fn of_problems(orders: bool) -> Vec<Change> {
     variants
 }
 
-/// Models of friction in the place of Coulomb's law, by sweeps, and bounds of friction by the interior point.
+/// Friction models other than Coulomb's law by sweeps, and bounded friction (Tresca) by the interior-point method.
 pub(super) fn models() -> Vec<Change> {
     let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
     models.map(|&model| of_model(Method::Nsgs, model)).chain([bounded()]).collect()
 }
 
-/// Bounds of friction, whose convex problem is solved at any size.
+/// Bounded friction (Tresca), whose convex problem is solved at any size.
 pub(super) fn bounded() -> Change {
     of_model(Method::InteriorPoint, FrictionModel::Tresca)
 }
@@ -122,9 +123,9 @@ fn of_model(method: Method, friction_model: FrictionModel) -> Change {
     Change::of_solver(name, Stepper::Moreau, &solver)
 }
 
-/// What charts ask of variants.
+/// Properties of variants for charts.
 impl Change {
-    /// True of [`default`], whose effort is its own affair.
+    /// True for [`default`], which determines its effort itself.
     pub(super) fn is_default(&self) -> bool {
         self.solver().method == Method::Auto
     }
@@ -138,7 +139,7 @@ impl Change {
         SolverSettings { stop, tolerance, max_sweeps, warm_start: true, ..self.solver() }
     }
 
-    /// Warm-started, with so many sweeps, whatever they come to; of the default its own settings.
+    /// Settings with a warm start and exactly `count` sweeps; for the default solver, its own settings.
     pub(super) fn sweeps(&self, count: u32) -> SolverSettings {
         match self.is_default() {
             true => self.solver(),

@@ -1,18 +1,19 @@
-//! Stability maps: where, over two parameters, each method holds, where it sinks or overlaps by more
-//! than 1 % of d, and where it is lost: torn, thrown, or no longer finite.
+//! Stability maps: regions over two parameters in which each method holds, in which it sinks or overlaps by more than 1
+//! % of d, and in which grains are lost (torn off or thrown away) or the state is no longer finite.
 //!
-//! Theory gives their borders. A step of Gauss–Seidel from nothing leaves the share
-//! ρ^s of what gravity adds to the slowest mode, g Δt, and of what the step before left. So a column
-//! sinks with
+//! Theory gives the boundaries of the regions. A step of s sweeps of Gauss–Seidel without a warm start leaves the
+//! fraction ρ^s of the slowest mode's velocity, which is the sum of gravity's contribution g Δt and of the velocity
+//! that the previous step left. A column therefore sinks with
 //!
 //! > v = A g Δt ρ^s / (1 − ρ^s),
 //!
-//! where A = 4/π is the slowest mode's part at the top of a column of many (1 for two discs) and ρ is
-//! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
-//! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
+//! where A = 4/π is the slowest mode's amplitude at the top of a tall column (1 for two discs), and `scene::stability`
+//! derives ρ for each scene. It sinks by v T = 0.01 d in the time T if s = ln(q/(1 + q)) / ln ρ, with q = 0.01 d/(A g
+//! Δt T). The boundary for springs is their critical time step.
 //!
-//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever. Δt does not enter: a bond
-//! pulls no more than is asked of it, so that no impulse of cohesion pulls grains into each other, however long a step.
+//! Over Δt and Bond the boundary is static: the Bond number below which C₀ no longer supports the cantilever. It does
+//! not depend on Δt. The force of a bond is a reaction, so that cohesion does not pull grains into each other, however
+//! long the step is.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -33,15 +34,16 @@ use crate::solver::METHODS;
 
 /// Simulated time of every run, s.
 const DURATION_SECS: f64 = 0.1;
-/// Sinking or overlap that counts, in d.
+/// Sinking or overlap that counts as a failure, in d.
 const COUNTS: f64 = 0.01;
-/// Part of the slowest mode in the motion of a column's top.
+/// Amplitude of the slowest mode at the top of a column.
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
-/// A grain that has gone this far is lost, in d.
+/// Displacement at which a grain counts as lost, in d.
 const LOST: f64 = 1.0;
-/// Speed that a scene at rest does not have at its end, in √(g d): of grains, and of those on springs.
+/// Speed at the end above which a scene does not count as at rest, in √(g d): for rigid grains, and for grains on
+/// springs.
 const SHAKES: [f64; 2] = [0.05, 4e-3];
-/// Discs of the column whose size is not varied.
+/// Number of discs of a column whose size is not varied.
 const DISCS: usize = 20;
 /// Size of a chart, pixels.
 const CHART: (u32, u32) = (500, 500);
@@ -53,7 +55,7 @@ struct Parameter {
     label: &'static str,
     from: f64,
     to: f64,
-    /// True of a number that counts.
+    /// True for an integer parameter.
     whole: bool,
 }
 
@@ -64,7 +66,7 @@ const fn sweeps(to: f64) -> Parameter {
 }
 
 impl Parameter {
-    /// A dozen values in ratio, half of them in a quick pass, each with the edges of its cell.
+    /// Twelve values (six in a quick pass) with a constant ratio, each with the edges of its cell.
     fn values(&self, effort: Effort) -> Vec<(f64, [f64; 2])> {
         let count = effort.pick(6, 12);
         let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
@@ -81,7 +83,8 @@ impl Parameter {
     }
 }
 
-/// A border that theory gives, against x: its name, and the variant that it is of; empty for all of them.
+/// A theoretical boundary as a function of x: its name, the variant that it applies to (empty for all), and the
+/// function.
 type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
 
 /// A map of two parameters.
@@ -162,9 +165,10 @@ fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
     scene
 }
 
-/// 0 where the variant holds, 1 where it sinks or overlaps, 2 where it is lost.
+/// Class of a run: 0 if the variant holds, 1 if it sinks or overlaps, 2 if grains are lost.
 ///
-/// A step left unsolved sinks steadily. Stiff springs that are stable have come to rest, but where they `may_swing`.
+/// Unsolved steps make a scene sink steadily. Grains on stable, stiff springs are at rest at the end, unless they
+/// `may_swing`.
 fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     let mut scene = scene.clone();
     step_by(variant, &mut scene);
@@ -189,7 +193,7 @@ fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     })
 }
 
-/// The methods and steppers of the registry, which alone have maps.
+/// The methods and steppers of the registry, which are the only variants with maps.
 fn of_registry() -> impl Iterator<Item = &'static Change> {
     let steppers = Stepper::ALL.iter().map(|stepper| stepper.name());
     let names: Vec<&str> = METHODS.iter().map(|info| info.name).chain(steppers).collect();
@@ -199,7 +203,7 @@ fn of_registry() -> impl Iterator<Item = &'static Change> {
 /// All maps, each with its file's name: the methods of the registry side by side.
 ///
 /// # Errors
-/// Where a scene is not sound.
+/// If a scene is invalid.
 pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
     let mut sheets = Vec::new();
     for map in &MAPS {
@@ -210,10 +214,12 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
             let mut caption = vec![
-                "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still shaking or not finite.".to_owned(),
+                "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still \
+                    shaking or not finite.".to_owned(),
             ];
             caption.push(if map.can_swing() {
-                "Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing."
+                "Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 \
+                    here lowers it by 5 %. Springs may swing."
             } else {
                 "Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs."
             }.to_owned());
@@ -231,7 +237,7 @@ pub fn count_of_maps() -> usize {
 }
 
 impl Map {
-    /// True of the cantilever, whose springs swing for longer than a run.
+    /// True for the cantilever, whose springs swing for longer than a run.
     fn can_swing(&self) -> bool {
         self.borders.iter().any(|(name, ..)| *name == STATICS)
     }
@@ -267,7 +273,7 @@ impl Map {
     }
 }
 
-/// What a sweep of Gauss–Seidel leaves of the slowest mode of a column.
+/// Factor by which a sweep of Gauss–Seidel reduces the slowest mode of a column.
 pub fn contraction_of_column(count: f64) -> f64 {
     (FRAC_PI_2 / count).cos().powi(2)
 }

@@ -1,6 +1,6 @@
-//! Where methods fail: scenes made to break them, each with a right answer, what was measured on it,
-//! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in `rest` or `motion`
-//! here, and [`CHALLENGES`] lists all.
+//! Stability tests: scenes that are made to break methods, each with a known answer, a measured error, and a parameter
+//! that drives it into failure. The scenes are in `scene::stability`, their measures in `rest` and `motion`, and
+//! [`CHALLENGES`] lists them all.
 
 mod maps;
 mod motion;
@@ -20,27 +20,27 @@ use crate::scene::{Preset, Scene};
 use crate::sim::{Simulation, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverChanges, SolverSettings};
 
-/// A scene made to break methods, and what is measured on it.
+/// A scene that is made to break methods, with its measure of error.
 #[derive(Clone, Copy, Debug)]
 pub struct Challenge {
-    /// Its name on the command line and in the table.
+    /// Name on the command line and in the table.
     pub name: &'static str,
-    /// What drives it into failure, with its unit.
+    /// The parameter that drives it into failure, with its unit.
     driver: &'static str,
-    /// The values of the driver that a quick pass tries, from harmless to harmful.
+    /// Values of the driver in a quick pass, from harmless to harmful.
     pub quick: &'static [f64],
-    /// Further values of a full pass, more harmful still.
+    /// Further, more harmful values of a full pass.
     further: &'static [f64],
-    /// Up to the first error it holds, above the second it fails; between the two it degrades.
+    /// A method holds up to the first error, degrades up to the second, and fails above it.
     limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
 }
 
 impl Challenge {
-    /// The challenge of that name.
+    /// The challenge with that name.
     ///
     /// # Errors
-    /// Where there is none.
+    /// If there is no such challenge.
     pub fn named(name: &str) -> Result<&'static Self> {
         let names = || CHALLENGES.map(|challenge| challenge.name).join(", ");
         CHALLENGES
@@ -53,7 +53,7 @@ impl Challenge {
         Self { further, ..self }
     }
 
-    /// The error of a trial; infinite where the state is no longer finite.
+    /// The error of a trial; infinite if the state is no longer finite.
     fn error(&self, trial: &Trial) -> Result<f64> {
         match (self.error)(trial) {
             Ok(error) if error.is_nan() => Ok(f64::INFINITY),
@@ -63,7 +63,7 @@ impl Challenge {
     }
 }
 
-/// Drivers and levels of several challenges.
+/// Drivers and levels that several challenges use.
 const TIME_STEP: &str = "time step (s)";
 const MASSES: &str = "ratio of masses";
 const STEPS: &[f64] = &[2e-4, 1e-3, 5e-3, 2e-2];
@@ -142,10 +142,10 @@ pub static CHALLENGES: [Challenge; 28] = [
         .further(&[2000.0, 10000.0]),
 ];
 
-/// The name of the variant that leaves scenes as they are stepped by default.
+/// The name of the variant that does not change the settings of scenes.
 const DEFAULT: &str = "default";
 
-/// Has a scene stepped by a variant.
+/// Applies a variant to a scene.
 fn step_by(variant: &Change, scene: &mut Scene) {
     if variant.name != DEFAULT {
         sweep_instead(&mut scene.solver);
@@ -153,8 +153,8 @@ fn step_by(variant: &Change, scene: &mut Scene) {
     variant.apply(scene);
 }
 
-/// Stops by the change of a sweep where a scene leaves it to the default, so that methods are told apart by what they do
-/// rather than by what is asked of them.
+/// Replaces the default solver settings of a scene by those of sweeps, so that all methods are given the same task and
+/// their results are comparable.
 fn sweep_instead(solver: &mut SolverSettings) {
     let (default, sweeps) = (SolverSettings::DEFAULT, SolverSettings::SWEEPS);
     if solver.stop == default.stop {
@@ -168,8 +168,8 @@ fn sweep_instead(solver: &mut SolverSettings) {
     }
 }
 
-/// All variants: the default, every method, every stepper without one, every model of friction that neither it nor these
-/// have, and settings that mend a known failure.
+/// All variants: the default, every method, every stepper without a method, every friction model that these do not
+/// cover, and settings that remedy a known failure.
 static VARIANTS: LazyLock<Vec<Change>> = LazyLock::new(|| {
     let solver = |name, method, ordering, friction_model| {
         let default = SolverChanges::default();
@@ -195,7 +195,7 @@ static VARIANTS: LazyLock<Vec<Change>> = LazyLock::new(|| {
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
     variant: &'static Change,
-    /// The value of the parameter that drives the scene into failure.
+    /// Value of the driver.
     level: f64,
 }
 
@@ -205,7 +205,7 @@ impl Trial {
         scene.simulation()
     }
 
-    /// The same with so many sweeps a step, whatever the variant says of them.
+    /// Starts the trial with `sweeps` sweeps per step, whatever the variant's settings are.
     fn start_within(&self, sweeps: u32, mut scene: Scene) -> Result<Simulation> {
         step_by(self.variant, &mut scene);
         scene.solver.max_sweeps = sweeps;
@@ -221,7 +221,7 @@ fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
     simulation.take_steps(simulation.parameters().steps_in(secs))
 }
 
-/// The longest way that any grain has gone since `scene`, in d.
+/// The longest displacement of any grain since `scene`, in d.
 fn longest_way(simulation: &Simulation, scene: &Scene) -> f64 {
     let now = &simulation.world().grains.positions;
     let ways = scene.grains.iter().zip(now).map(|(grain, now)| grain.position.distance(*now));
@@ -242,13 +242,13 @@ fn energy_scale(simulation: &Simulation) -> f64 {
     world.grains.masses[0] * world.gravity.magnitude() * world.mean_diameter
 }
 
-/// The longest way of any grain since `scene`, in d, or the speed that is left, in √(g d), whichever is
-/// larger: 0 for what stays at rest.
+/// The longest displacement of any grain since `scene`, in d, or the remaining speed, in √(g d), whichever is larger; 0
+/// for a scene at rest.
 fn unrest(simulation: &Simulation, scene: &Scene) -> f64 {
     longest_way(simulation, scene).max(jitter(simulation))
 }
 
-/// What the fixed bodies carry along the y axis, N: the sum of N n_y over their contacts.
+/// Load on the fixed bodies along the y axis, N: the sum of N n_y over their contacts.
 fn force_on_ground(simulation: &Simulation) -> f64 {
     let numbering = Numbering::of(simulation.world());
     let list = simulation.contacts();
@@ -258,8 +258,7 @@ fn force_on_ground(simulation: &Simulation) -> f64 {
     impulse / simulation.parameters().time_step_secs
 }
 
-/// Where a property that holds above a threshold begins, searched between `low` and `high` in
-/// ratio, with so many halvings.
+/// The threshold above which a property is true, searched between `low` and `high` by bisection of their ratio.
 fn threshold(
     [mut low, mut high]: [f64; 2],
     halvings: u32,

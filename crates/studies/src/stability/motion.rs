@@ -1,5 +1,5 @@
-//! What moves: friction on what slides, impacts, what must not matter, and sudden changes. Each measure is an error that
-//! is 0 where the answer is right.
+//! Tests of moving scenes: sliding friction, impacts, invariances, and sudden changes. Each measure is an error that is
+//! 0 for the right answer.
 
 use glam::DVec2;
 use rand::seq::SliceRandom;
@@ -13,15 +13,15 @@ use crate::scene::stability as scenes;
 use crate::sim::{Pull, Simulation};
 use crate::world::{Boundary, Parameters};
 
-// Friction on what slides: what it must not lift, and what it has to follow at once.
+// Sliding friction: it must not lift the disc, and must follow a change of pressure at once.
 
-/// Time to slide and to be still, in that of sliding alone.
+/// Duration of sliding and rest, in units of the duration of sliding.
 const WATCHED: f64 = 1.2;
-/// Time that the two discs of the blow are watched, s.
+/// Duration of the blow on two discs, s.
 const BLOW_SECS: f64 = 0.1;
 
-/// How far a sliding disc leaves its level, in d, or the error of the way to its stop, beyond the half of a
-/// step's way that schemes may differ by, over that way; whichever is larger.
+/// Distance by which a sliding disc leaves its level, in d, or the relative error of its sliding distance, whichever is
+/// larger. Half the distance of one step, by which schemes may differ, is subtracted from the latter error.
 pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::dilatancy();
     scene.parameters.time_step_secs = trial.level;
@@ -41,8 +41,8 @@ pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     Ok(off_level.max(beyond / right))
 }
 
-/// How far off the two discs are along the floor, in d, for friction that is not that of the same time's
-/// pressure; or the error of their speed in the end, over what the blow takes of it; whichever is larger.
+/// Error of the positions of the two discs along the floor, in d, due to friction that does not follow the pressure at
+/// the same time; or the error of their final speed, relative to the loss of speed by the blow; whichever is larger.
 pub(super) fn blow(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::blow();
     scene.parameters.time_step_secs = trial.level;
@@ -59,7 +59,7 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
         let before_secs = simulation.time_secs();
         simulation.step()?;
         let now = momentum(&simulation);
-        // All that the floor has pushed by now.
+        // The total impulse of the floor so far.
         let pushed = now.y - start.y;
         let left = (now.x - (start.x - friction * pushed)) / mass;
         off += left * (simulation.time_secs() - before_secs);
@@ -73,13 +73,12 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
 
 // Impacts: bounces, rows of balls, and walls that a step can jump over.
 
-/// Phases of the step in which the wall is reached.
+/// Number of phases of the step at which the wall is reached.
 const PHASES: u32 = 10;
 const AFTER_SECS: f64 = 0.1;
 
-/// Error of the first bounce's height, over that of the fall; with that, for ρ < 1, the speed left
-/// when all bounces are over, over that of the first impact; for ρ = 1, the relative error of the
-/// energy after ten falls.
+/// Error of the first bounce's height, relative to the height of the fall. For ρ < 1 also the remaining speed after all
+/// bounces, relative to that of the first impact; for ρ = 1 also the relative error of the energy after ten falls.
 pub(super) fn bounce(trial: &Trial) -> Result<f64> {
     let restitution = trial.level;
     let scene = scenes::bounce(restitution);
@@ -124,7 +123,7 @@ pub(super) fn newtons_cradle(trial: &Trial) -> Result<f64> {
     Ok((velocities[velocities.len() - 1].x / right - 1.0).abs())
 }
 
-/// Share of phases in which the disc goes through the wall.
+/// Fraction of phases in which the disc goes through the wall.
 pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
     let mut through = 0;
     for phase in 0..PHASES {
@@ -137,16 +136,16 @@ pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
     Ok(f64::from(through) / f64::from(PHASES))
 }
 
-// What must not matter: where the origin is, and in which order the contacts come.
+// Invariances: the position of the origin and the order of the contacts must not matter.
 
 const FAR_ROWS: usize = 4;
 const FAR_SECS: f64 = 0.1;
 const SHUFFLED_ROWS: usize = 6;
-/// Largest component of its grains' velocities, m/s.
+/// Largest component of the initial velocities, m/s.
 const SPEED: f64 = 0.05;
 
-/// Largest difference of the ways of a grain between a run far from the origin and the same at the
-/// origin, in d.
+/// Largest difference between the paths of a grain in a run far from the origin and in the same run at the origin, in
+/// d.
 pub(super) fn far(trial: &Trial) -> Result<f64> {
     let [here, there] =
         [0.0, trial.level].map(|distance| scenes::heap_far_away(FAR_ROWS, distance));
@@ -162,13 +161,13 @@ pub(super) fn far(trial: &Trial) -> Result<f64> {
     Ok(differences.fold(0.0, f64::max) / diameter)
 }
 
-/// Largest difference of velocities after a step between two numberings of the same grains, over the
-/// largest velocity.
+/// Largest difference of the velocities after a step between two numberings of the same grains, relative to the largest
+/// velocity.
 pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
     let mut random = Pcg64::seed_from_u64(7);
     let mut scene = scenes::heap(SHUFFLED_ROWS);
     scene.solver.tolerance = trial.level;
-    // With friction not even the velocities of a step are unique.
+    // With friction, even the velocities of a step are not unique.
     scene.parameters.friction = 0.0;
     for grain in &mut scene.grains {
         let mut component = || SPEED * random.random_range(-1.0..1.0);
@@ -187,22 +186,22 @@ pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
     Ok(differences.fold(0.0, f64::max) / largest)
 }
 
-// Sudden changes: a grain taken away, another time step, and every slider at random.
+// Sudden changes: a grain is removed, the time step changes, or all sliders move at random.
 
-/// Steps before a sudden change, and after it.
+/// Number of steps before and after a sudden change.
 const BEFORE: u64 = 50;
 const AFTER: u64 = 30;
-/// Time step before it is switched, s.
+/// Time step before the change, s.
 const SMALL_STEP_SECS: f64 = 2e-4;
 const ROWS: usize = 4;
 /// Half the side of the box around the heap, in d.
 const BOX: f64 = 12.0;
 /// Simulated time between two changes of the sliders, s.
 const CHANGE_SECS: f64 = 0.05;
-/// Sweeps of a step while the sliders move: a window has to keep up.
+/// Sweeps per step while the sliders move, few enough for a window to keep up.
 const LIVE_SWEEPS: u32 = 200;
 
-/// Largest kinetic energy after a heavy disc is taken off a column, over m g d of one of its discs.
+/// Largest kinetic energy after a heavy disc is removed from a column, relative to m g d of one of its discs.
 pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::lift_off(trial.level))?;
     simulation.take_steps(BEFORE)?;
@@ -216,8 +215,8 @@ pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     Ok(energy)
 }
 
-/// A heap at rest whose time step grows: the longest way of any grain, in d, or the speed that is
-/// left, in √(g d), whichever is larger.
+/// Error for a heap at rest whose time step grows: the longest displacement of any grain, in d, or the remaining speed,
+/// in √(g d), whichever is larger.
 pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.parameters.time_step_secs = SMALL_STEP_SECS;
@@ -229,8 +228,8 @@ pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-/// Grains that have left their box after so many seconds with every slider moved at random, and a
-/// hand that pulls at grains.
+/// Number of grains that have left their box after some seconds in which every slider moves at random and a hand pulls
+/// at grains.
 pub(super) fn sliders(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.solver.max_sweeps = LIVE_SWEEPS;

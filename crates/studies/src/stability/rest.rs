@@ -1,5 +1,5 @@
-//! What has to stay at rest, or give way at the right moment: columns, piles, cohesive rows, and too little room. Each
-//! measure is an error that is 0 where the answer is right.
+//! Tests of scenes that must stay at rest, or yield at the right moment: columns, piles, cohesive rows, and too little
+//! space. Each measure is an error that is 0 for the right answer.
 
 use super::{Trial, advance, force_on_ground, jitter, longest_way, threshold, unrest};
 use crate::error::Result;
@@ -8,16 +8,15 @@ use crate::scene::{Scene, cradle};
 use crate::sim::Simulation;
 use crate::world::Parameters;
 
-// Columns: what the floor carries, and how far the top sinks. A step that is not solved to its end
-// leaves a speed, so a column sinks as if its discs were soft: the fake elasticity of an
-// unconverged solver.
+// Columns: the load on the floor, and the sinking of the top. An unconverged step leaves a speed, so a column sinks as
+// if its discs were soft: the apparent elasticity of an unconverged solver.
 
 const COLUMN_SECS: f64 = 0.1;
-/// Sweeps of a step, unless they are what is varied: few, as in a window that has to keep up.
+/// Sweeps per step, unless they are varied: few, as in a window that must keep up.
 const FEW_SWEEPS: u32 = 100;
 const SAGGING_DISCS: usize = 20;
 
-/// Greatest error of the floor's force in the last quarter of the run, over the weight.
+/// Largest error of the force on the floor in the last quarter of the run, relative to the weight.
 pub(super) fn column(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(with_sweeps(FEW_SWEEPS, scenes::column(trial.count())))?;
     let world = simulation.world();
@@ -31,7 +30,7 @@ pub(super) fn column(trial: &Trial) -> Result<f64> {
     Ok(worst)
 }
 
-/// A column whose steps get `sweeps` sweeps each (or substeps), from nothing.
+/// A column whose steps have `sweeps` sweeps (or substeps) each, without a warm start.
 pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
     let mut scene = scenes::column(count);
     scene.solver.max_sweeps = sweeps;
@@ -41,17 +40,17 @@ pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
     scene
 }
 
-/// How far the top of a column sinks, in d.
+/// Sinking of the top of a column, in d.
 pub(super) fn sag(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &sagging(SAGGING_DISCS, trial.count() as u32))
 }
 
-/// How far a heavy disc on a light one sinks, in d.
+/// Sinking of a heavy disc on a light one, in d.
 pub(super) fn mass_ratio(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::mass_ratio(trial.level)))
 }
 
-/// How far a large disc on two small ones sinks, in d.
+/// Sinking of a large disc on two small ones, in d.
 pub(super) fn size_ratio(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::logs(trial.level)))
 }
@@ -67,30 +66,30 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
     Ok(sunk(&simulation, scene))
 }
 
-/// How far the last grain has moved since `scene`, in d.
+/// Displacement of the last grain since `scene`, in d.
 pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
     before.distance(now) / scene.mean_diameter
 }
 
-// Piles that have to stand still, and some that have to give way.
+// Piles that must stand, and piles that must yield.
 
 const ROWS: usize = 6;
 const STANDING_SECS: f64 = 0.2;
 const SMALL_ROWS: usize = 4;
 /// The log pile of equal discs slides below μ = tan 15° = 2 − √3.
 const FRICTION_OF_LOGS: f64 = 0.267_949_192_431_122_7;
-/// What slides has gone this far, in d, when the watch ends.
+/// Displacement at the end of the test that counts as sliding, in d.
 const SLID: f64 = 0.02;
 const SLIDING_SECS: f64 = 0.2;
-/// Frictions and angles are searched from a part of the right one to as many times that, with
-/// halvings down to 1 % and to 0.5 %.
+/// Friction coefficients and angles are searched from the right value divided by this factor to the right value times
+/// this factor, with bisections down to 1 % and to 0.5 %.
 const FRICTION_RANGE: f64 = 4.0;
 const ANGLE_RANGE: f64 = 2.0;
 const PILE_HALVINGS: u32 = 8;
 
-/// The longest way that any grain goes in some time, in d.
+/// The longest displacement of any grain within some time, in d.
 fn way_in(trial: &Trial, secs: f64, scene: Scene) -> Result<f64> {
     let mut simulation = trial.start(scene.clone())?;
     advance(&mut simulation, secs)?;
@@ -102,17 +101,17 @@ fn with_time_step(trial: &Trial, mut scene: Scene) -> Scene {
     scene
 }
 
-/// How far the grain of a heap that moves most goes, in d.
+/// The longest displacement of any grain of a heap, in d.
 pub(super) fn repose(trial: &Trial) -> Result<f64> {
     way_in(trial, STANDING_SECS, with_time_step(trial, scenes::heap(ROWS)))
 }
 
-/// Relative error of the friction at which three piled logs slide apart.
+/// Relative error of the friction coefficient at which three piled logs slide apart.
 pub(super) fn friction_limit(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::logs(1.0), FRICTION_OF_LOGS)
 }
 
-/// Relative error of the friction at which the keystone of an arch slips through.
+/// Relative error of the friction coefficient at which the keystone of an arch slips through.
 pub(super) fn arch(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::arch(), scenes::FRICTION_OF_ARCH)
 }
@@ -142,8 +141,8 @@ fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
     Ok(way_in(trial, SLIDING_SECS, scene)? >= SLID)
 }
 
-/// After very many steps at rest: the longest way of any grain, in d, or the speed that is left, in
-/// √(g d), whichever is larger.
+/// After very many steps at rest: the longest displacement of any grain, in d, or the remaining speed, in √(g d),
+/// whichever is larger.
 pub(super) fn rest(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap(SMALL_ROWS);
     let mut simulation = trial.start(scene.clone())?;
@@ -151,16 +150,16 @@ pub(super) fn rest(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-// Very many contacts at rest, and few sweeps.
+// Very many contacts at rest, with few sweeps.
 
-/// Sweeps of a step, or iterations of a method without sweeps: what a window has time for.
+/// Sweeps per step, or iterations of a method without sweeps, that a window has time for.
 const WINDOW_SWEEPS: u32 = 40;
-/// Steps from a start without impulses. In free fall, a grain would go 0.2 d.
+/// Number of steps from a start without impulses. In free fall, a grain would move 0.2 d.
 const STEPS: u64 = 20;
-/// Discs in every other row of the lattice, and its rows: 3,900 contacts.
+/// Number of discs in every other row of the lattice, and of rows: 3,900 contacts.
 const LATTICE: [usize; 2] = [37, 36];
 
-/// What is left of motion in a lattice, or the common residual of the last step, whichever is larger.
+/// Remaining motion in a lattice, or the common residual of the last step, whichever is larger.
 pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     let [columns, rows] = LATTICE;
     let scene = scenes::lattice(columns, rows, trial.level);
@@ -169,7 +168,7 @@ pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene).max(simulation.observables().residual))
 }
 
-/// What is left of motion in a heap of so many grains.
+/// Remaining motion in a heap, whose number of grains is the level.
 pub(super) fn size(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap_of(trial.count());
     let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
@@ -177,23 +176,23 @@ pub(super) fn size(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-// Cohesion: what it has to hold, and when it has to let go. The static pull-off force knows no time
+// Cohesion: bonds must hold, and must break at the right load. The static pull-off force does not depend on the time
 // step.
 
 const CHAIN: usize = 8;
-/// The watch over a chain, s: overloaded by a hundredth, it opens in a third of that.
+/// Duration of the test of a chain, s. If it is overloaded by a hundredth, it opens in a third of that time.
 const CHAIN_SECS: f64 = 0.04;
-/// Time to hang still first, s, at a Bond number that holds, in units of the breaking one. Much more
-/// would make springs recoil.
+/// Initial time of hanging at rest, s, at a Bond number that holds, in units of the breaking Bond number. A much larger
+/// value would make springs recoil.
 const HANG_SECS: f64 = 0.04;
 const SURE: f64 = 1.5;
-/// The breaking Bond number is searched down to 4^(1/2^8), 0.5 %.
+/// Bisections of the breaking Bond number, down to a factor of 4^(1/2^8), 0.5 %.
 const CHAIN_HALVINGS: u32 = 9;
-/// Time that bridge and cantilever are watched, s: torn, they fall 30 d in it.
+/// Duration of the tests of bridge and cantilever, s. If torn off, they fall 30 d in it.
 const WATCH_SECS: f64 = 0.25;
 pub(super) const CANTILEVER: i32 = 4;
 const BRIDGE: i32 = 10;
-/// Time step of the shock, s: the paper's bond opens at it, for want of convergence.
+/// Time step of the shock, s, at which the paper's bond opens, for lack of convergence.
 const SHOCK_STEP_SECS: f64 = 5e-4;
 
 /// Relative error of the Bond number at which a chain breaks.
@@ -210,17 +209,17 @@ pub(super) fn chain(trial: &Trial) -> Result<f64> {
     Ok((breaking / right - 1.0).abs())
 }
 
-/// How far the grain of a cantilever that moves most goes, in d.
+/// The longest displacement of any grain of a cantilever, in d.
 pub(super) fn cantilever(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::cantilever(CANTILEVER)))
 }
 
-/// How far the grain of a bridge that moves most goes, in d.
+/// The longest displacement of any grain of a bridge, in d.
 pub(super) fn bridge(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::bridge(BRIDGE)))
 }
 
-/// Gap between i and j of the paper's cradle after the shock, in d: solved well, it stays closed.
+/// Gap between i and j of the paper's cradle after the shock, in d. If solved well, it stays closed.
 pub(super) fn shock(trial: &Trial) -> Result<f64> {
     let mut scene = cradle();
     scene.parameters.time_step_secs = SHOCK_STEP_SECS;
@@ -231,14 +230,14 @@ pub(super) fn shock(trial: &Trial) -> Result<f64> {
     Ok(((places[1].x - places[0].x) / scene.mean_diameter - 1.0).abs())
 }
 
-// Too little room.
+// Too little space.
 
 const RECOVERY_SECS: f64 = 0.3;
 const SETTLING_SECS: f64 = 0.2;
 const WATCHED_STEPS: u64 = 100;
 
-/// Two discs that overlap: the share of the overlap that is left after 0.3 s, or the largest kinetic
-/// energy on the way, over m g d, whichever is larger.
+/// Two overlapping discs: the fraction of the overlap that remains after 0.3 s, or the largest kinetic energy until
+/// then, relative to m g d, whichever is larger.
 pub(super) fn overlap(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::overlapped(trial.level))?;
     let scale = super::energy_scale(&simulation);
@@ -250,8 +249,8 @@ pub(super) fn overlap(trial: &Trial) -> Result<f64> {
     Ok(left.max(energy))
 }
 
-/// Share of the steps that were not solved to their tolerance, or the mean over the last hundred of
-/// the speed that does not die out, in √(g d), whichever is larger.
+/// Fraction of the steps that were not solved to their tolerance, or the mean remaining speed over the last hundred
+/// steps, in √(g d), whichever is larger.
 pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::squeeze(trial.level))?;
     let (mut unsolved, mut speeds) = (0u64, 0.0);
@@ -266,8 +265,8 @@ pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
     Ok(share.max(speeds / WATCHED_STEPS as f64))
 }
 
-/// When walls have moved in and the grains had time to come to rest: how far the grain that is furthest
-/// from its place is from it, in d, or the speed that is left, in √(g d), whichever is larger.
+/// After walls have moved in and the grains have had time to come to rest: the largest distance of a grain from its
+/// position, in d, or the remaining speed, in √(g d), whichever is larger.
 pub(super) fn moving_walls(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(with_time_step(trial, scenes::press()))?;
     advance(&mut simulation, scenes::pressing_secs() + SETTLING_SECS)?;

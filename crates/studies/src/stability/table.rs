@@ -1,4 +1,4 @@
-//! Verdicts of every solver variant on every challenge at every level, as data, as CSV, in words and as a picture.
+//! Verdicts on every solver variant for every challenge and level, as data, as CSV, in words and as a picture.
 
 use std::fmt;
 
@@ -10,13 +10,13 @@ use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::harness::Change;
 
-/// How a method did. Later is worse.
+/// Verdict on a method. Later variants are worse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StabilityVerdict {
     /// The answer is right.
     Holds,
-    /// The answer is off, but the scene lives.
+    /// The answer is inaccurate, but the scene stays intact.
     Degrades,
     /// The answer is wrong.
     Fails,
@@ -34,7 +34,7 @@ impl StabilityVerdict {
         }
     }
 
-    /// The word for it.
+    /// The verdict in a word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -44,7 +44,7 @@ impl StabilityVerdict {
     }
 }
 
-/// One variant on one challenge at one level. A row of the table.
+/// One variant on one challenge at one level: a row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilityCell {
     /// Name of the challenge.
@@ -53,24 +53,24 @@ pub struct StabilityCell {
     pub method: String,
     /// Value of the challenge's driver.
     pub level: f64,
-    /// What came of it.
+    /// The verdict.
     pub verdict: StabilityVerdict,
-    /// The error, to two digits: the next ones differ from build to build.
+    /// The error, to two digits, because further digits differ between builds.
     pub error: String,
 }
 
-/// All that was tried.
+/// All results.
 #[derive(Clone, Debug, Default)]
 pub struct StabilityTable {
-    /// By challenge, variant and level.
+    /// Sorted by challenge, variant and level.
     pub cells: Vec<StabilityCell>,
 }
 
 impl StabilityTable {
-    /// Tries every variant on the challenges, on all cores.
+    /// Runs every variant on the challenges, on all cores.
     ///
     /// # Errors
-    /// Where a scene is not sound.
+    /// If a scene is invalid.
     pub fn run(
         challenges: &[&'static Challenge],
         quick: bool,
@@ -108,7 +108,7 @@ impl StabilityTable {
     /// The table as CSV.
     ///
     /// # Errors
-    /// Where a row cannot be said in CSV.
+    /// If a row cannot be written as CSV.
     pub fn to_csv(&self) -> Result<Vec<u8>> {
         let refuse = |error: csv::Error| Error::file("table.csv", error);
         let mut writer = csv::Writer::from_writer(Vec::new());
@@ -118,17 +118,17 @@ impl StabilityTable {
         writer.into_inner().map_err(|error| Error::file("table.csv", error.error()))
     }
 
-    /// A table from its CSV.
+    /// Reads a table from its CSV.
     ///
     /// # Errors
-    /// Names the row that says something else.
+    /// Names the row that cannot be read.
     pub fn from_csv(text: &str) -> Result<Self> {
         let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
         let cells = rows.collect::<std::result::Result<_, _>>();
         Ok(Self { cells: cells.map_err(|error| Error::file("table.csv", error))? })
     }
 
-    /// What came of a variant on a challenge, level by level.
+    /// Results of a variant on a challenge, level by level.
     fn levels(&self, challenge: &Challenge, variant: &Change) -> Vec<&StabilityCell> {
         let of_both =
             |cell: &&StabilityCell| cell.scene == challenge.name && cell.method == variant.name;
@@ -142,7 +142,7 @@ impl StabilityTable {
     }
 }
 
-/// What came of all levels together: how it failed at worst, and the first level at which it did.
+/// The worst verdict over all levels, and the first level with it.
 fn summary(levels: &[&StabilityCell]) -> (StabilityVerdict, Option<f64>) {
     let worst = levels.iter().map(|cell| cell.verdict).max().unwrap_or(StabilityVerdict::Holds);
     let first =
@@ -165,7 +165,7 @@ const SCENE_WIDTH: usize = 17;
 const CELL_WIDTH: usize = 16;
 
 impl fmt::Display for StabilityTable {
-    /// A line a challenge, a column a variant: the worst verdict, and the first level that got it.
+    /// One line per challenge and one column per variant: the worst verdict, and the first level with it.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{:SCENE_WIDTH$}", "")?;
         for variant in VARIANTS.iter() {
@@ -185,7 +185,7 @@ impl fmt::Display for StabilityTable {
     }
 }
 
-/// A number as short as it can be said.
+/// A number in its shortest form.
 fn number(value: f64) -> String {
     if value != 0.0 && !(1e-2..1e4).contains(&value.abs()) {
         format!("{value:e}").replace('-', "−")
@@ -194,24 +194,24 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Columns side by side: with more, their words would not fit into a page's width.
+/// Number of columns side by side. With more columns, their text would not fit into the page width.
 const COLUMNS: usize = 10;
-/// Width of a page, height of a row, and room for words below, pixels.
+/// Width of a page, height of a row, and space for text below, pixels.
 const WIDTH: u32 = 1200;
 const ROW: u32 = 32;
 const BELOW: u32 = 150;
 
-/// Colours of holding, degrading and failing, told apart also by their lightness.
+/// Colours of holding, degrading and failing, which also differ in lightness.
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
 
 pub(super) fn colour(verdict: f64) -> Rgb {
     COLOURS[(verdict as usize).min(2)]
 }
 
-/// The table as a picture: blocks of columns, each below its heads.
+/// The table as a picture: blocks of columns, each below its headers.
 pub fn picture(table: &StabilityTable) -> Sheet {
     let challenges = table.challenges();
-    // Names of two words have two lines.
+    // Names with two words take two lines.
     let rows_of_block = challenges.len() + 2;
     let rows = VARIANTS.len().div_ceil(COLUMNS) * rows_of_block;
     let mut x = Axis::linear("", 0.0, COLUMNS as f64);

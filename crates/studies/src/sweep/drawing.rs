@@ -1,4 +1,4 @@
-//! The picture of a sweep: the mean slump of each combination of settings against one that varies.
+//! The picture of a sweep: mean slump of each combination of settings against a varied setting.
 
 use serde_json::Value;
 
@@ -7,11 +7,11 @@ use super::run_group::RunGroup;
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet};
 use crate::harness::{Effort, Machine, distinct};
 
-/// The axis is logarithmic if the largest number on it is so many times the smallest.
+/// Ratio of the largest to the smallest number from which on an axis is logarithmic.
 const LONG: f64 = 8.0;
-/// Numbers on an axis that have words of their own.
+/// Largest number of values on an axis that are labelled individually.
 const MOST_TICKS: usize = 6;
-/// A chart with a share of these widths beside the outermost numbers.
+/// Margin beyond the outermost numbers, as a fraction of the width of a chart.
 const MARGIN: f64 = 0.06;
 
 fn is_level(chart: &SweepChart, group: &RunGroup) -> bool {
@@ -22,7 +22,8 @@ fn is_level(chart: &SweepChart, group: &RunGroup) -> bool {
     !chart.level.is_empty() && chart.level.iter().all(is_same)
 }
 
-/// Draws the groups of a study. What does not vary in a quick pass tells no panels and curves apart there.
+/// Draws the groups of a study. A setting that is constant in a quick pass does not distinguish panels and curves
+/// there.
 pub(super) fn sheet(
     choice: &SweepChart,
     groups: &[RunGroup],
@@ -108,13 +109,13 @@ fn axis(name: &str, numbers: impl Iterator<Item = f64> + Clone) -> Axis {
         let margin = MARGIN * (high - low);
         Axis::linear(name, low - margin, high + margin)
     } else {
-        // One number, or none.
+        // A single number, or none.
         let middle = if low.is_finite() { low } else { 0.0 };
         Axis::linear(name, middle - 1.0, middle + 1.0)
     };
     let tick = |number| (number, words(&Value::from(number)));
     let ticks: Vec<(f64, String)> = distinct(numbers).into_iter().map(tick).collect();
-    // Of more than that, round numbers say as much.
+    // For more values, round numbers are sufficient.
     if ticks.len() > MOST_TICKS { axis } else { Axis { ticks, ..axis } }
 }
 

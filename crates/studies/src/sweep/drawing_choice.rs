@@ -1,28 +1,28 @@
-//! The axes, curves and panels that a study asks for.
+//! The axes, curves and panels that a study file requests.
 
 use serde::Deserialize;
 
 use crate::error::{Error, Result};
 
-/// What a sweep draws, by the names of settings that vary.
+/// The chart of a sweep, by the names of varied settings.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweepChart {
     /// The setting on the x axis.
     pub x: String,
-    /// A curve for each of its values.
+    /// The setting with one curve for each of its values.
     pub curves: String,
-    /// A panel for each combination of their values.
+    /// The settings with one panel for each combination of their values.
     #[serde(default)]
     pub panels: Vec<String>,
-    /// Runs that have this value of a setting are level lines, against which the reader compares the others.
+    /// Runs with these values of settings are drawn as horizontal lines, for comparison.
     #[serde(default)]
     pub level: toml::Table,
 }
 
 impl SweepChart {
     /// # Errors
-    /// If it names something that does not vary.
+    /// If it names a setting that does not vary.
     pub(super) fn check(&self, varied: &[Vec<String>]) -> Result<()> {
         let names = || varied.iter().flatten();
         let one = [("chart.x", &self.x), ("chart.curves", &self.curves)].into_iter();

@@ -1,5 +1,5 @@
-//! `report.json` of a sweep: what its runs come to in the mean over their starts, and how much each choice changes that
-//! from the same starts; with the program, machine, day and command that it is of.
+//! `report.json` of a sweep: means over initial states, and the effect of each choice with the same initial states,
+//! together with the program, machine, date and command.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -31,10 +31,10 @@ struct SweepReport<'a> {
     groups: Vec<RunGroup>,
 }
 
-/// Writes the report of a study whose runs are all there, and its chart. `version` is the program's.
+/// Writes the report of a completed study, and its chart. `version` is the program's version.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If a file cannot be written.
 pub fn write_means(study: &Study, table: &RunsTable, folder: &Path, version: &str) -> Result<()> {
     let machine = Machine::this(version)?;
     let groups = groups(study, table)?;
@@ -135,7 +135,7 @@ fn words(values: &[Value]) -> String {
 mod tests {
     use super::*;
 
-    /// A study of the cradle without runs of its own, and results made up for it.
+    /// Groups of a study of the pile, with synthetic results.
     fn reported(vary: &str, slump: impl Fn(usize) -> f64, spoil: Option<usize>) -> Vec<RunGroup> {
         let text = format!("name = \"made\"\n[base]\nscene = \"pile\"\n[vary]\n{vary}");
         let study = Study::parse(&text, "made.toml".as_ref(), false).expect("a study");
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn means_are_over_seeds_and_differences_are_taken_seed_by_seed_from_the_first_value() {
-        // Seeds scatter by 0.1, and Δt adds 0.02 to each to within 0.001: seen pair by pair alone.
+        // Seeds scatter by 0.1, and Δt adds 0.02 to each within 0.001, which is only visible in paired differences.
         let vary = "bond = [0, 20]\ndt = [1e-3, 5e-3]\nseed = [4, 5, 6]\n";
         let slump = |run: usize| {
             let (seed, dt, bond) = (run % 3, run / 3 % 2, run / 6);

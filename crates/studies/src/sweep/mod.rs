@@ -1,9 +1,9 @@
-//! The sweep engine: runs a study on all cores, keeps each result as it comes, goes on where it
-//! stopped, and joins parts that ran elsewhere.
+//! The sweep engine. It runs a study on all cores, stores each result at once, resumes a study that was stopped, and
+//! joins parts that ran elsewhere.
 //!
-//! A folder of results holds `study.json` (which study it is), journals (results as they come), `states/` (initial
-//! states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are there,
-//! `runs.csv` and `report.json`.
+//! A folder of results contains `study.json` (the study's identity), journals (results as they are computed), `states/`
+//! (initial states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are
+//! complete, `runs.csv` and `report.json`.
 
 mod drawing;
 mod drawing_choice;
@@ -41,23 +41,23 @@ use crate::output::{
 use crate::scene::Scene;
 use crate::states::States;
 
-/// File that says which study a folder holds.
+/// File with the identity of the study in a folder.
 const STUDY_FILE: &str = "study.json";
 const DATA: &str = "data";
 const STATES: &str = "states";
 const TABLE: &str = "runs.csv";
-/// How long, and how often, another part that only looks at the folder is waited for.
+/// Interval and number of attempts to wait for another part that only reads the folder.
 const MOMENT: Duration = Duration::from_millis(100);
 const MOMENTS: u32 = 20;
 
-/// How a sweep is to run.
+/// Options of a sweep.
 #[derive(Clone, Debug, Default)]
 pub struct SweepOptions {
-    /// The part of the study to run; all of it where there is none.
+    /// The part of the study to run; `None` for the whole study.
     pub shard: Option<Shard>,
-    /// Throw away what a folder holds of another study, or what cannot be read.
+    /// Discards results of another study, and results that cannot be read.
     pub redo: bool,
-    /// The folder of initial states; one in the folder of results where there is none.
+    /// The folder of initial states; `None` for one in the folder of results.
     pub states: Option<PathBuf>,
 }
 
@@ -69,11 +69,10 @@ struct Label {
     version: String,
 }
 
-/// Runs a study, or a part of it, into `folder`. Where that completes the study, `runs.csv` is
-/// written and given back.
+/// Runs a study, or a part of it, in `folder`. If the study is then complete, writes `runs.csv` and returns its table.
 ///
 /// # Errors
-/// Where the folder holds another study or cannot be written, or a state does not settle.
+/// If the folder contains another study or cannot be written, or an initial state does not settle.
 pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Option<RunsTable>> {
     check_writable("out", folder)?;
     let shared = SharedFolder::of(folder)?;
@@ -101,7 +100,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     let part = study.runs.iter().enumerate().filter(|(index, _)| mine(*index));
     let cases: Vec<Case<&PlannedRun>> =
         part.map(|(_, run)| Case { key: run.key.clone(), cost: run.cost, setup: run }).collect();
-    // Files of runs that are no part of this are none of its business.
+    // Files of runs that do not belong to this part are ignored.
     let keys: HashSet<&str> = cases.iter().map(|case| case.key.as_str()).collect();
     finished.retain(|key, case| {
         keys.contains(key.as_str())
@@ -122,7 +121,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
         return Ok(None);
     }
     let table = join(study, &folders, folder)?;
-    // All runs are there, so no other process is writing one.
+    // All runs are complete, so no other process is writing one.
     let drafts = [folder.to_owned(), folder.join(SERIES), folder.join(STATES)];
     drafts.iter().try_for_each(|folder| remove_drafts(folder))?;
     Ok(Some(table))
@@ -138,10 +137,10 @@ fn swept(study: &Study, folder: &Path, states: &States, run: &PlannedRun) -> Res
     Ok(SweptRun { outcome, series })
 }
 
-/// Joins the parts that lie in `folders` into `runs.csv` in `out`.
+/// Joins the parts in `folders` into `runs.csv` in `out`.
 ///
 /// # Errors
-/// Where a folder holds another study, runs are missing, or two parts disagree.
+/// If a folder contains another study, runs are missing, or two parts disagree.
 pub fn merge(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     for folder in folders {
         match read_label(folder)? {
@@ -165,8 +164,7 @@ fn join(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     Ok(table)
 }
 
-/// The recording of one run, where the study asks for it. What a run that was stopped has left of one is
-/// removed.
+/// The recording of one run, if the study asks for it. An incomplete recording of a run that was stopped is removed.
 fn recording_of(
     study: &Study,
     folder: &Path,
@@ -203,11 +201,11 @@ fn read_label(folder: &Path) -> Result<Option<Label>> {
     }
 }
 
-/// Makes the folder that of this study, or finds that it is.
+/// Assigns the folder to this study, or checks that it is already assigned.
 ///
-/// The label is what makes it one study's. Before it is written the folder is the old study's without
-/// its table, which comes again from the journals; after it, the new study's. What is left of the old
-/// one then counts for nothing, as runs are known by their keys, and is swept out.
+/// The label file assigns the folder. Until it is written, the folder belongs to the old study, without its table,
+/// which can be recomputed from the journals. Afterwards it belongs to the new study. Remaining files of the old study
+/// are then ignored, because runs are identified by keys, and are removed.
 fn claim(
     study: &Study,
     folder: &Path,
@@ -233,7 +231,7 @@ fn claim(
         throw_away(folder)
     };
     for _ in 0..MOMENTS {
-        // Another part of the same study may have begun anew.
+        // Another part of the same study may have assigned the folder in the meantime.
         match read_label(folder) {
             Ok(Some(found)) if found == label => return Ok(()),
             Ok(Some(found)) if !redo => return Err(other_study(folder, study, &found)),
@@ -249,7 +247,7 @@ fn claim(
     Err(shared.in_use())
 }
 
-/// Sweeps out a folder's results, which no other program may be writing. What this program did not write stays.
+/// Removes a folder's results, which no other program may be writing. Files that this program did not write remain.
 fn throw_away(folder: &Path) -> Result<()> {
     let of_series = journal::files_in(&folder.join(SERIES))?;
     let tables = [TABLE, REPORT].map(|name| folder.join(name));
@@ -262,7 +260,7 @@ fn throw_away(folder: &Path) -> Result<()> {
         remove_recording(path)?;
     }
     for inner in [SERIES, DATA] {
-        // One that is not empty stays.
+        // A folder that is not empty remains.
         let _ = std::fs::remove_dir(folder.join(inner));
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! A study as its file has it, laid out as runs: what each is made of, and the key that tells it from all others.
+//! The runs of a study file, each with its complete config and a unique key.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -14,22 +14,22 @@ use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
 use crate::input::{MOST_OF_TOML, read_text};
 
-/// More runs than this are a mistake rather than a wish: planned, run and listed they take some 2 kB
-/// each.
+/// Largest number of runs. More are probably a mistake; planned, run and listed, they take about 2 kB each.
 const MOST_RUNS: usize = 1_000_000;
 
-/// The parameter that tells the starts of a scene apart.
+/// The parameter that distinguishes the initial states of a scene.
 pub(super) const SEED: &str = "seed";
 
-/// What a study file must be, for messages.
+/// The expected form of a study file, for messages.
 const FORM: &str = "a study file in TOML with name, base and vary";
 
-/// A study file. Tables are read by hand below, since what they may hold is what a [`Config`] holds.
+/// A study file. Its tables are parsed separately below, because they may contain anything that a [`Config`] may
+/// contain.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StudyFile {
     name: String,
-    /// What it is for, in words.
+    /// Purpose of the study, in words.
     #[serde(default, rename = "about")]
     _about: String,
     #[serde(default)]
@@ -43,7 +43,7 @@ struct StudyFile {
     quick: Quick,
 }
 
-/// What a quick pass does otherwise.
+/// Changes for a quick pass.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Quick {
@@ -51,7 +51,7 @@ struct Quick {
     vary: Table,
 }
 
-/// Which rows a run writes over time.
+/// The rows that a run writes over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesSettings {
@@ -67,36 +67,37 @@ pub struct SeriesSettings {
 pub struct Study {
     /// Its name.
     pub name: String,
-    /// Tells studies apart: hash of the keys of all runs.
+    /// Identity of the study: hash of the keys of all runs.
     pub fingerprint: String,
-    /// True if these are the runs of a quick pass, which differs from the full one.
+    /// True if these are the runs of a quick pass, and it differs from the full pass.
     pub is_quick_pass: bool,
-    /// Which rows each run writes over time, if any.
+    /// The rows that each run writes over time, if any.
     pub series: Option<SeriesSettings>,
-    /// What is recorded of each run, if anything: below the results, in a folder that has the run's key.
+    /// Recording settings of each run, if any. A recording is stored below the results, in a folder named after the
+    /// run's key.
     pub data: Option<DataSettings>,
-    /// What is drawn of the results, if anything.
+    /// The chart of the results, if any.
     pub chart: Option<SweepChart>,
-    /// The names of what varies, a list of them for what varies together.
+    /// The names of the varied settings; settings that vary together are in one list.
     pub varied: Vec<Vec<String>>,
     /// The runs.
     pub runs: Vec<PlannedRun>,
 }
 
 impl Study {
-    /// Reads a study file and lays out its runs, all of them checked.
+    /// Reads a study file, plans its runs, and checks all of them.
     ///
     /// # Errors
-    /// Where the file cannot be read or says something that no study says.
+    /// If the file cannot be read or is not a valid study.
     pub fn read(path: &Path, quick: bool) -> Result<Self> {
         let text = read_text(path, FORM, MOST_OF_TOML)?;
         Self::parse(&text, path, quick)
     }
 
-    /// Lays out the runs of a study file's text; `path` is for messages.
+    /// Plans the runs of a study from the text of its file; `path` is for messages.
     ///
     /// # Errors
-    /// Where it says something that no study says.
+    /// If the text is not a valid study.
     pub fn parse(text: &str, path: &Path, quick: bool) -> Result<Self> {
         let mut file: StudyFile = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
@@ -140,7 +141,7 @@ impl Study {
     }
 }
 
-/// Puts the values of a quick pass in the place of those they stand for, whether those vary or not.
+/// Replaces values by those of a quick pass, whether they vary or not.
 fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
     for (key, value) in values {
         if other.remove(&key).is_none() && !to.contains_key(&key) {
@@ -152,7 +153,7 @@ fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Resu
     Ok(())
 }
 
-/// The runs of a study. Files that it names are relative to `folder`.
+/// The runs of a study. Relative paths in it refer to `folder`.
 fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     let varied = file.vary.keys().flat_map(|key| key.split_whitespace());
     let mut given: Vec<&str> = file.base.keys().map(String::as_str).collect();
@@ -163,7 +164,7 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
         }
         given.push(name);
     }
-    // Wrong names and types are refused by table and key, before any product is formed.
+    // Wrong names and types are reported by table and key, before combinations are formed.
     for (key, value) in &file.base {
         config_of("base", [(key, value)])?;
     }
@@ -172,7 +173,7 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     for (key, said) in &file.vary {
         let axis = VariedParameters::read(key, said)?;
         count = count.saturating_mul(axis.values.len());
-        // Before the next axis: its values, too, take room.
+        // Checked before the next axis, because its values also take memory.
         if count > MOST_RUNS {
             let found = format!("{count} runs with vary.{key}");
             let allowed = format!("no more than {MOST_RUNS}; take two studies for more");
@@ -196,8 +197,8 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     (0..count).map(run).collect()
 }
 
-/// What varies together: most often one parameter, or several that go hand in hand, which the file
-/// writes as `"grains box-width" = [[138, 16], [500, 30]]`.
+/// Parameters that vary together: usually one, or several in parallel, written as `"grains box-width" = [[138, 16],
+/// [500, 30]]` in the file.
 struct VariedParameters {
     names: Vec<String>,
     /// A value for each name.
@@ -257,15 +258,15 @@ fn one_line(message: &str) -> String {
 /// One run of a study.
 #[derive(Clone, Debug)]
 pub struct PlannedRun {
-    /// Names it: hash of all that its result hangs on.
+    /// Unique name: hash of everything that affects its result.
     pub key: String,
-    /// What it runs, every number filled in.
+    /// The config, with every default filled in.
     pub config: Config,
-    /// How long it may take, in any unit: for the order of work and for progress.
+    /// Expected duration, in any unit, for the order of work and for progress.
     pub cost: f64,
 }
 
-/// A base scene that has been read.
+/// A base scene that was already read.
 struct Known {
     base: BaseScene,
     /// Hash of all its discs.
@@ -282,8 +283,8 @@ impl Known {
 }
 
 impl PlannedRun {
-    /// That of a config. Series have these grains; `outputs` is what is written of the run besides its result, and
-    /// `bases` what has been read, by name.
+    /// Plans the run of a config. Its series need the grains `grains_asked_for`; `outputs` are its output settings,
+    /// which are part of the key; `bases` caches base scenes.
     fn new(
         config: &Config,
         grains_asked_for: &[usize],
@@ -295,15 +296,15 @@ impl PlannedRun {
             Entry::Vacant(place) => place.insert(Known::of(config)?),
         };
         let mut scene = config.change(&known.base)?;
-        // The study says what is written of its runs.
+        // The study determines the output of its runs.
         scene.data = None;
         let config = config.resolved(&scene);
         let grains = config.source.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = grains_asked_for.iter().find(|&&grain| grain >= grains) {
             return Err(Error::value("series.grains", grain, format!("below {grains}")));
         }
-        // The scene stands in for the files that it may have been read from, the hash of its discs for them:
-        // they are nearly all that it says, and the same in each run.
+        // The key contains the scene instead of the files from which it was read, and the hash of its discs instead of
+        // the discs, which are nearly all of the data and the same in each run.
         scene.grains.clear();
         scene.fixed_discs.clear();
         let made_of = (env!("CARGO_PKG_VERSION"), &config, &scene, &known.discs, outputs);
@@ -322,7 +323,7 @@ fn hash(said: &impl Serialize, scene: &str) -> Result<blake3::Hasher> {
     Ok(hasher)
 }
 
-/// Half of a hash: 128 bits never meet by chance.
+/// Half of a hash: with 128 bits, collisions practically never occur.
 fn short(hasher: &blake3::Hasher) -> String {
     hasher.finalize().to_hex()[..32].to_owned()
 }

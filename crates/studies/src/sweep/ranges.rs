@@ -1,4 +1,4 @@
-//! The values that a list or a range of a study file stands for.
+//! The values of a list or a range in a study file.
 
 use std::collections::HashSet;
 use std::fmt::Display;
@@ -7,16 +7,15 @@ use toml::{Table, Value};
 
 use crate::error::{Error, Result};
 
-/// Digits that the values of a range are rounded to, so that they read well and are the same on
-/// every machine.
+/// Number of digits to which the values of a range are rounded, so that they are short and the same on every machine.
 const DIGITS: usize = 9;
-/// More values than this in one range are a mistake rather than a wish.
+/// Largest number of values in one range. More are probably a mistake.
 const MOST_VALUES: i64 = 1_000_000;
 
-/// The values that a list or a range stands for. `field` is for messages.
+/// The values of a list or a range. `field` is for messages.
 ///
-/// A list is `[0, 20, 50]`. A range is `{ from = 1, to = 16 }`, whole numbers one by one, or
-/// `{ from = 1e-4, to = 1e-2, count = 20 }`, evenly spaced, with `scale = "log"` in ratio.
+/// A list is `[0, 20, 50]`. A range is `{ from = 1, to = 16 }`, all whole numbers, or `{ from = 1e-4, to = 1e-2, count
+/// = 20 }`, evenly spaced; with `scale = "log"` the ratio is constant.
 pub(super) fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     let values = match said {
         Value::Array(list) => list.clone(),
@@ -36,7 +35,7 @@ pub(super) fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     Ok(values)
 }
 
-/// What two values share that mean the same number or word: 1 and 1.0 do, 0 and -0.0 as well.
+/// A key that is equal for equal numbers or words: for 1 and 1.0, and for 0 and -0.0.
 fn meaning(value: &Value) -> (Option<u64>, String) {
     match number(value) {
         Some(number) => (Some((number + 0.0).to_bits()), String::new()),
@@ -96,7 +95,7 @@ fn of_range(field: &str, range: &Table) -> Result<Vec<Value>> {
     Ok((0..count).map(value).collect())
 }
 
-/// A range that says no number of values: whole numbers one by one.
+/// A range without a count: all whole numbers in it.
 fn whole_numbers(field: &str, range: &Table) -> Result<Vec<Value>> {
     let (Value::Integer(from), Value::Integer(to)) = (&range["from"], &range["to"]) else {
         let allowed = "a number of values, as the bounds are not both whole numbers";
@@ -116,7 +115,7 @@ fn not_above(field: &str, least: &str, from: impl Display, to: impl Display) -> 
     Error::value(format!("{field}.to"), to, format!("{least} from, which is {from}"))
 }
 
-/// True if values are evenly spaced in ratio.
+/// True if the ratio of neighbouring values is constant.
 fn is_logarithmic(field: &str, range: &Table, from: f64) -> Result<bool> {
     let Some(scale) = range.get("scale") else { return Ok(false) };
     match scale.as_str() {

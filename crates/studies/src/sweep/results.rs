@@ -1,5 +1,5 @@
-//! What one run of a study comes to, and `runs.csv`: a row a run, in the study's own order, with its whole config and
-//! its result.
+//! The result of one run of a study, and `runs.csv`: one row per run, in the study's order, with its complete config
+//! and result.
 
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -19,39 +19,39 @@ use crate::output::write_file;
 use crate::scene::Scene;
 use crate::sim::{AlarmKind, RunEnding, Simulation, Tally};
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// At its full duration.
+    /// It reached its full duration.
     Done,
     /// Its state was no longer finite.
     NotFinite,
 }
 
-/// What a run comes to. A row of the study's table. Numbers of a run whose state was no longer finite are those that
-/// it ended with, finite or not.
+/// The result of a run: a row of the study's table. If the state was no longer finite, the numbers are those at the
+/// end, finite or not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
-    /// How it ended.
+    /// The end of the run.
     pub status: Status,
-    /// Sums over its steps.
+    /// Sums over the steps.
     #[serde(flatten)]
     pub tally: Tally,
     /// Δy_G at the end (paper eq. 11).
     #[serde(with = "number")]
     pub slump: f64,
-    /// Gap between the first two grains at the end, in diameters; 0 where there is one grain.
+    /// Gap between the first two grains at the end, in diameters; 0 for a single grain.
     #[serde(with = "number")]
     pub first_gap: f64,
     /// Grains that went through a wall or left the world.
     pub lost_grains: u32,
-    /// The names of the kinds of alarms that it raised, with spaces between them.
+    /// The names of the kinds of alarms that it raised, separated by spaces.
     pub alarms: String,
 }
 
 impl RunResult {
-    /// Its columns in a table.
+    /// Columns of the result in a table.
     const COLUMNS: &str = "status,steps,slump,mean_overlap,max_overlap,mean_contacts,first_gap,\
         unconverged_steps,stalled_steps,sweeps,largest_residual,\
         largest_velocity_error,lost_grains,alarms";
@@ -77,7 +77,7 @@ impl RunResult {
     }
 }
 
-/// A run as the journal has it.
+/// A run in the journal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
     pub outcome: RunResult,
@@ -88,7 +88,7 @@ pub(super) struct SweptRun {
 
 #[cfg(test)]
 impl RunResult {
-    /// Of a run of which all is well, for tests.
+    /// The result of a sound run, for tests.
     pub(crate) fn of_slump(slump: f64) -> Self {
         let tally = Tally { steps: 1, sweeps: 1, ..Tally::default() };
         let (status, alarms) = (Status::Done, String::new());
@@ -158,7 +158,7 @@ fn first_gap(simulation: &Simulation) -> f64 {
 pub struct RunsTable {
     /// Key, config and result of each run, in the study's order.
     pub rows: Vec<(String, Config, RunResult)>,
-    /// Wall-clock time of each run, s. Not in the file: it is another one every time.
+    /// Wall-clock time of each run, s. It is not in the file, because it differs between repetitions.
     pub wall_secs: Vec<f64>,
 }
 
@@ -183,12 +183,12 @@ impl RunsTable {
         Ok(Self { rows, wall_secs })
     }
 
-    /// Runs whose state was no longer finite.
+    /// Number of runs whose state was no longer finite.
     pub fn not_finite(&self) -> usize {
         self.rows.iter().filter(|(.., result)| result.status == Status::NotFinite).count()
     }
 
-    /// How many runs raised alarms, and of which kinds, in words; nothing where none did.
+    /// Number of runs that raised alarms, by kind, in words; `None` if there were none.
     pub fn alarms(&self) -> Option<String> {
         alarms_of(self.rows.iter().map(|(.., result)| result))
     }
@@ -216,8 +216,8 @@ impl RunsTable {
     }
 }
 
-/// How many of some runs raised alarms, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)";
-/// nothing where none did.
+/// Number of runs that raised alarms, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)"; `None` if there
+/// were none.
 pub(crate) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Option<String> {
     let (mut all, mut alarmed, mut by_kind) = (0, 0, [0; AlarmKind::ALL.len()]);
     for result in results {

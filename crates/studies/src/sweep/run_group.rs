@@ -1,31 +1,30 @@
-//! Runs that differ in their start alone.
+//! Groups of runs that only differ in their initial state.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// Runs that differ in their start alone.
+/// Runs that only differ in their initial state.
 #[derive(Default, Serialize)]
 pub(super) struct RunGroup {
-    /// What varies between groups.
+    /// The varied settings of the group.
     pub settings: Map<String, Value>,
-    /// Runs that have a number: those that came to an end and lost no grain.
+    /// Number of valid runs, which ended with a finite state and lost no grain.
     pub starts: usize,
-    /// Those that did not.
+    /// Number of invalid runs.
     pub spoilt: usize,
-    /// Mean slump, and half its 95 % interval; `null` if no start has a slump, and with one start.
+    /// Mean slump, and half its 95 % interval; `null` if no run is valid, and for a single run.
     pub slump: [f64; 2],
-    /// The same of this slump less that under the first value of a list, all else alike, over the starts of both. By the
-    /// first name of the list.
+    /// Difference between this slump and that under the first value of a list, with all other settings equal, over the
+    /// initial states of both; mean and half the interval. Keyed by the first name of the list.
     pub less_first: BTreeMap<String, [f64; 2]>,
-    /// Share of the steps that were not solved as asked.
+    /// Fraction of unsolved steps.
     pub unsolved: f64,
-    /// The largest bound that a step had on the velocities' error, m/s;
-    /// `null` if a state was no longer finite.
+    /// The largest error bound of the velocities in a step, m/s; `null` if a state was no longer finite.
     pub largest_velocity_error: f64,
     /// The largest of the runs' mean overlaps, d.
     pub mean_overlap: f64,
-    /// Time of a run in the mean, s.
+    /// Mean duration of a run, s.
     pub secs: f64,
 }

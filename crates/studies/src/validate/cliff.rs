@@ -1,13 +1,13 @@
-//! Columns of cohesive grains: the more cohesive, the less they spread, and how high a cliff they hold.
+//! Columns of cohesive grains: stronger cohesion makes them spread less, and limits the height of a stable cliff.
 //!
-//! A packing with Z contacts a grain and branches in all directions alike has φZ/(πd) contacts across a unit of length,
-//! each of which bears C₀, so that its tensile strength is σ_t = φ Z C₀/(π d). By Mohr and Coulomb it has the cohesion
-//! c = σ_t tan φ_f, and a cliff stands no higher than H = (4c/(ρ_b g)) tan(45° + φ_f/2). With C₀ = Bond·m g/2, m = σπd²/4
-//! and ρ_b = φσ the solid fraction drops out:
+//! In a packing with Z contacts per grain and isotropic branches, φZ/(πd) contacts cross a unit of length. Each bears
+//! C₀, so the tensile strength is σ_t = φ Z C₀/(π d). By Mohr and Coulomb the cohesion is c = σ_t tan φ_f, and a cliff
+//! stands no higher than H = (4c/(ρ_b g)) tan(45° + φ_f/2). With C₀ = Bond·m g/2, m = σπd²/4 and ρ_b = φσ the solid
+//! fraction cancels:
 //!
 //! > H/d = ½ Z Bond tan φ_f tan(45° + φ_f/2).
 //!
-//! It bounds H from above: a slip along a plane is one way to fall, and there may be easier ones.
+//! This is an upper bound of H: it assumes a slip along a plane, and other ways of failure may need less.
 
 use super::collapse::CollapsingColumn;
 use super::experiment::*;
@@ -32,9 +32,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 const ASPECT: f64 = 2.0;
 const STANDS: f64 = 0.2;
-/// tan φ_f of discs with μ = 0.5, about.
+/// Approximate tan φ_f of discs with μ = 0.5.
 const TAN_OF_FRICTION: f64 = 0.36;
-/// Z of the columns, about.
+/// Approximate Z of the columns.
 const COORDINATION: f64 = 3.6;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -51,16 +51,16 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// The highest cliff by Mohr and Coulomb, in d.
+/// Upper bound of the height of a cliff by Mohr and Coulomb, in d.
 fn bound(bond: f64) -> f64 {
     let angle = TAN_OF_FRICTION.atan();
     let steepness = (0.25 * std::f64::consts::PI + 0.5 * angle).tan();
     0.5 * COORDINATION * bond * TAN_OF_FRICTION * steepness
 }
 
-/// The Bond from which on the columns of a seed stand, between the last that falls and the first that does not, in
-/// ratio; NaN where none falls before or none stands. Still more cohesive ones may fall again where Δt is large: that
-/// is the paper's finding, and none of Mohr's.
+/// The Bond number above which the columns of a seed stand: the geometric mean of the last value that falls and the
+/// first that stands; NaN if there is no such pair. At large Δt, columns with even stronger cohesion may fall again,
+/// which is the paper's finding and not part of Mohr's theory.
 fn standing_from(of_seed: &Measurements) -> f64 {
     let runs = &of_seed.0;
     let Some(first) = runs.iter().position(|case| case.reading("slump") < STANDS) else {
@@ -96,7 +96,7 @@ fn judge(all: &Measurements) -> Vec<Measured> {
     });
     let heights = all.by_seed(|mut of_seed| {
         of_seed.0.sort_by(|one, other| one.at("bond").total_cmp(&other.at("bond")));
-        // H₀ = a R₀, R₀ in d from the number of grains.
+        // H₀ = a R₀, with R₀ in d from the number of grains.
         let height = mean(&of_seed.readings("aspect")).mean * half_width(grains as usize, ASPECT);
         height / bound(standing_from(&of_seed))
     });

@@ -1,10 +1,10 @@
-//! Plane shear of cohesive grains: what cohesion does to friction and solid fraction at one inertial number.
+//! Plane shear of cohesive grains: the effect of cohesion on friction and solid fraction at one inertial number.
 //!
-//! Grains that pull with C₀ under the pressure P have a second number besides I, η = C₀/(P d). With C₀ = Bond·m g/2 of two
-//! grains of mass m, and P in units of m g/d, η = Bond/(2P).
+//! Grains that attract with C₀ under the pressure P have a second dimensionless number in addition to I, η = C₀/(P d).
+//! With C₀ = Bond·m g/2 for two grains of mass m, and P in units of m g/d, η = Bond/(2P).
 //!
-//! Where the law says what work W breaks a bond there is a third, E = W/(m γ̇² d²), the work over the kinetic energy
-//! with which grains pass each other. Under `range` W = C₀ δc, so that E = η (δc/d)/I².
+//! If the law defines the work W that breaks a bond, there is a third number, E = W/(m γ̇² d²), the ratio of this work
+//! to the kinetic energy with which grains pass each other. Under `range` W = C₀ δc, so E = η (δc/d)/I².
 
 use super::experiment::*;
 use super::fit::rank_correlation;
@@ -28,11 +28,11 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const INERTIAL: f64 = 0.08;
-/// η that is weak, and η that is strong.
+/// Weak and strong values of η.
 const WEAK: f64 = 1.0;
 const STRONG: f64 = 30.0;
 
-/// η and E of the layers whose bonds have an energy that is chosen: steps of 1 ms see the break of the weakest.
+/// η and E of the layers with a prescribed bond energy. Steps of 1 ms resolve the breaking of the weakest bonds.
 const FORCES: [f64; 2] = [3.0, 10.0];
 const ENERGIES: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 
@@ -74,7 +74,7 @@ fn judge(measured: &Measurements) -> Vec<Measured> {
     let all = &measured.with("energy", 0.0);
     let (grains, strengths) = (all.first("grains"), all.list("strength"));
     let system = format!("{grains} grains, η = {strengths}, {}", all.seeds());
-    // Each layer against that of the same seed without cohesion.
+    // Each layer is compared with that of the same seed without cohesion.
     let against = |strength: f64, reading: &str, of: fn(f64, f64) -> f64| {
         all.by_seed(|of_seed| {
             let at = |strength| of_seed.with("strength", strength).reading(reading);

@@ -1,5 +1,4 @@
-//! Columns of dry grains that collapse and spread: how far they run and how high they end, against how slender they
-//! were.
+//! Columns of dry grains that collapse and spread: their run-out and final height as functions of their aspect ratio.
 
 use super::experiment::*;
 use super::fit::power_law;
@@ -29,15 +28,15 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const FRICTION: f64 = 0.5;
-/// Up to here run-out is linear in a, and the final height is that of the column where it is lower.
+/// Aspect ratio up to which the run-out is linear in a, and the final height is that of the column if it is lower.
 const LINEAR_TO: f64 = 2.0;
-/// How long a column is watched, in √(H₀/g).
+/// Duration of a run after the release, in √(H₀/g).
 const TIMES: f64 = 6.0;
-/// When the gates go, s.
+/// Time at which the gates are removed, s.
 const RELEASE_SECS: f64 = 0.02;
-/// The floor, in diameters: grains that lie in the hollows of the discs it is made of have their lowest points there.
+/// Level of the floor, in diameters: the lowest points of grains in the hollows between the discs of the floor.
 const FLOOR: f64 = 0.37;
-/// Windows over which the surface of a heap is held against a line, in diameters.
+/// Windows in which the surface of a heap is compared with a straight line, in diameters.
 const WINDOWS: [f64; 2] = [4.0, 12.0];
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -55,14 +54,14 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CollapsingColumn {
     pub grains: usize,
-    /// H₀/R₀ that is aimed at.
+    /// Nominal aspect ratio H₀/R₀.
     pub aspect: f64,
     pub seed: u64,
     pub bond: f64,
 }
 
 impl CollapsingColumn {
-    /// Lets it settle between walls, pulls the gates, and measures what is left.
+    /// Lets the column settle between walls, removes the gates, and measures the final heap.
     pub(super) fn run(&self, variant: StepVariant) -> Result<RunReadings> {
         let half = half_width(self.grains, self.aspect);
         let settled = settled(&self.between_walls(half, variant))?;
@@ -70,7 +69,7 @@ impl CollapsingColumn {
         scene.parameters.bond = self.bond;
         let mut scene = collapse_of(scene, half, RELEASE_SECS);
         variant.apply(&mut scene);
-        // Twice the height of the centre of mass: the surface is not even.
+        // Twice the height of the centre of mass, because the surface is uneven.
         let floor = FLOOR * DIAMETER;
         let height = 2.0 * (centre_of_mass(&settled.simulation).y - floor);
         scene.duration_secs = RELEASE_SECS + TIMES * (height / GRAVITY).sqrt();
@@ -92,7 +91,7 @@ impl CollapsingColumn {
         ]))
     }
 
-    /// Its grains above the floor, loosely, between two walls.
+    /// The column's grains above the floor, loosely packed between two walls.
     fn between_walls(&self, half: f64, variant: StepVariant) -> Scene {
         let mut grains = loose(self.grains, 2.0 * half, self.seed);
         for grain in &mut grains {
@@ -114,7 +113,7 @@ fn column_scene(grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// The grains of the largest set that contacts join.
+/// The grains of the largest cluster of touching grains.
 fn joined(moment: &Moment) -> Vec<GrainState> {
     let grains = &moment.grains;
     let mut set: Vec<usize> = (0..grains.len()).collect();
@@ -138,7 +137,7 @@ fn joined(moment: &Moment) -> Vec<GrainState> {
     grains.iter().zip(roots).filter(|(_, root)| *root == largest).map(|(grain, _)| *grain).collect()
 }
 
-/// How far from the middle, and how high, grains reach, m: the mean of both sides, and the highest point.
+/// Extent of grains from the middle, as the mean of both sides, and their highest point, m.
 fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     let (mut left, mut right, mut top) = (0.0f64, 0.0f64, 0.0f64);
     for grain in grains {
@@ -164,13 +163,13 @@ const PUBLISHED: &str = "
 fn judge(all: &Measurements) -> Vec<Measured> {
     let (grains, aspects) = (all.first("grains"), all.list("aspect"));
     let system = format!("{grains} grains, a = {aspects}, {}", all.seeds());
-    // Run-out over a of the columns of each seed that are not slender.
+    // Run-out divided by a, for the columns of each seed with small aspect ratio.
     let low_factors = all.by_seed(|of_seed| {
         let low = of_seed.such_that(|case| case.at("aspect") <= LINEAR_TO).0;
         let ratios = low.iter().map(|case| case.reading("run_out") / case.reading("aspect"));
         mean(&ratios.collect::<Vec<_>>()).mean
     });
-    // Exponents, and the values of the law at a = 1, of the columns of each seed that are at least so slender.
+    // Exponents, and the power law's values at a = 1, for the columns of each seed with at least this aspect ratio.
     let power_laws = |reading: &str, least: f64| -> (Vec<f64>, Vec<f64>) {
         let law = |of_seed: Measurements| {
             let slender = of_seed.such_that(|case| case.at("aspect") >= least);

@@ -1,18 +1,18 @@
 //! A gas of discs that cools by collisions with a constant restitution e (P. K. Haff, J. Fluid Mech. 134, 401, 1983).
 //!
-//! With T = ½ m⟨v²⟩ the pressure-like temperature of the plane, each collision takes (1 − e²) T in the mean: the
-//! relative velocity along the normal has the variance 2T/m, and counted by collisions its square 4T/m, of which
-//! ¼ m (1 − e²) is lost. A disc collides ω = 2√π n d χ √(T/m) times a second (Enskog), χ = (1 − 7φ/16)/(1 − φ)²
-//! (D. Henderson 1975), and two share a collision, so that of N discs dE/dt = −N √π n d χ (1 − e²) T √(T/m), E = N T.
+//! With T = ½ m⟨v²⟩, the temperature of the plane, each collision dissipates (1 − e²) T on average: the relative
+//! velocity along the normal has the variance 2T/m, its mean square over collisions is 4T/m, and ¼ m (1 − e²) of that
+//! is lost. A disc collides ω = 2√π n d χ √(T/m) times per second (Enskog), χ = (1 − 7φ/16)/(1 − φ)² (D. Henderson
+//! 1975), and two discs share a collision. For N discs, dE/dt = −N √π n d χ (1 − e²) T √(T/m), E = N T.
 //!
-//! The walls are of the same matter as the discs. A length of wall is hit n_w √(T/2πm) times a second, n_w = n (1 + 2φχ)
-//! the density at the wall, which bears the pressure; there ½ m ⟨v_n²⟩ = T, and (1 − e²) T is lost. Together, with the
-//! length L_w that centres see of the walls,
+//! The walls have the same restitution as the discs. A unit length of wall is hit n_w √(T/2πm) times per second, where
+//! n_w = n (1 + 2φχ) is the density at the wall, which bears the pressure. There ½ m ⟨v_n²⟩ = T, and (1 − e²) T is
+//! lost. With the length L_w of the walls as seen by the centres, the total is
 //!
 //! > dT/dt = −2 T √(T/T₀)/τ,  2/τ = (1 − e²) √(T₀/m) (√π n d χ + L_w n_w/(√(2π) N)),
 //!
-//! and so T = T₀/(1 + t/τ)². Distributions stay near Maxwell's: at e = 0.9 the fourth cumulant is −0.03 and changes the
-//! rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
+//! so that T = T₀/(1 + t/τ)². Distributions stay close to Maxwell's: at e = 0.9 the fourth cumulant is −0.03 and
+//! changes the rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
 
 use std::f64::consts::{PI, TAU};
 
@@ -44,11 +44,11 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 const RESTITUTION: f64 = 0.9;
 const SOLID_FRACTION: f64 = 0.1;
-/// √(2T₀/m), m/s: a disc goes a hundredth of its diameter in 1e-3 s.
+/// √(2T₀/m), m/s: in 1e-3 s a disc moves a hundredth of its diameter.
 const THERMAL_SPEED: f64 = 0.1;
-/// How long a gas is watched, in τ.
+/// Duration of a run, in τ.
 const TIMES: f64 = 6.0;
-/// Moments at which its temperature is read.
+/// Number of moments at which the temperature is measured.
 const MOMENTS: u32 = 120;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -78,7 +78,7 @@ fn time_secs(discs: f64) -> f64 {
     2.0 / ((1.0 - RESTITUTION.powi(2)) * root * (of_pairs + of_walls))
 }
 
-/// Discs evenly in a box, with the velocities of Maxwell's distribution.
+/// Discs on a regular grid in a box, with velocities from Maxwell's distribution.
 fn gas(discs: usize, seed: u64) -> Scene {
     let side = side(discs as f64);
     let columns = (discs as f64).sqrt().ceil();
@@ -123,7 +123,7 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
         points.push((simulation.time_secs(), simulation.observables().kinetic_energy / start));
     }
     let [exponent, _] = cooling_law(&points);
-    // E is that of these velocities, not of the distribution they were drawn from: τ goes with 1/√E.
+    // E is the energy of these velocities, not of the distribution from which they were drawn: τ scales with 1/√E.
     let mass: f64 = run.simulation.world().grains.masses.iter().sum();
     let expected = tau * THERMAL_SPEED / (2.0 * start / mass).sqrt();
     // 1/√T = (1 + t/τ)/√T₀.
@@ -162,7 +162,7 @@ mod tests {
         let time = run().reading("time");
         assert!((time - 1.0).abs() < 0.1, "{time}");
         assert_eq!(run().lost_grains, 0);
-        // Two runs of the same gas are the same to the last bit.
+        // Two runs of the same gas are bitwise equal.
         assert_eq!(run().reading("time").to_bits(), time.to_bits());
     }
 }

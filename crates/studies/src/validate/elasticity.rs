@@ -1,20 +1,21 @@
-//! The elasticity that Contact Dynamics has where steps are left unsolved (T. Unger, L. Brendel, D. E. Wolf,
-//! J. Kertész, Phys. Rev. E 65, 061305, 2002).
+//! The apparent elasticity of Contact Dynamics with unsolved steps (T. Unger, L. Brendel, D. E. Wolf, J. Kertész, Phys.
+//! Rev. E 65, 061305, 2002).
 //!
-//! Discs stand in a row on a wall; a step is N sweeps from the impulses of the step before. Let x be what the present
-//! impulses, less those of rest, do to the velocity of a long wave in a step, and v that velocity. Impulses −v would
-//! end the motion. Sweeps bring x nearer to −v by a factor S, so that
+//! Discs stand in a row on a wall. A step is N sweeps that start from the impulses of the previous step. Let v be the
+//! velocity of a long wave, and x the change of v in a step by the difference between the present impulses and those at
+//! rest. Impulses with x = −v would end the motion. The sweeps multiply the distance of x from −v by a factor S, so
+//! that
 //!
 //! > x' = −v + S (x + v),  v' = v + x' = S (x + v),
 //!
-//! a matrix of trace 2S and determinant S: a damped wave that shrinks by √S a step and turns by θ, cos θ = √S. For a
-//! wave of wave number k sweeps are diffusion, S = exp(−q N (kd)²): for small S this is the row of springs
-//! κ = q m N/Δt² and dashpots γ = q m N/Δt of the paper, with c = √(qN) d/Δt and 1/τ = q N (kd)²/2Δt. So period and
-//! damping each tell q. The longest wave on n discs has kd = π/2n.
+//! which is a matrix with trace 2S and determinant S: a damped wave that decreases by √S and rotates by θ per step, cos
+//! θ = √S. For a wave of wave number k, sweeps act as diffusion, S = exp(−q N (kd)²). For small kd this is the paper's
+//! row of springs κ = q m N/Δt² and dashpots γ = q m N/Δt, with c = √(qN) d/Δt and 1/τ = q N (kd)²/2Δt. Period and
+//! damping therefore each determine q. The longest wave on n discs has kd = π/2n.
 //!
-//! What q is: one parallel (Jacobi) sweep shrinks the wave by cos kd, so q = ½; with the mass splitting of `jacobi`
-//! half of that, since a disc with two contacts is cut in two. A chain has no loops, so each order of Gauss–Seidel that
-//! is the same in every sweep shrinks by cos² kd (D. M. Young 1971) and q = 1.
+//! The value of q: one parallel (Jacobi) sweep multiplies the wave by cos kd, so q = ½. With the mass splitting of
+//! `jacobi` it is half of that, because a disc with two contacts is split in two. A chain has no loops, so every order
+//! of Gauss–Seidel that is the same in every sweep multiplies the wave by cos² kd (D. M. Young 1971), and q = 1.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -37,21 +38,21 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Δt, s. Periods in steps do not depend on it; the smaller, the less the row sags.
+/// Δt, s. Periods in steps do not depend on it; a smaller value makes the row sag less.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// Discs touch below this gap, in diameters.
+/// Gap below which discs touch, in diameters.
 const TOUCHES_WITHIN: f64 = 1e-2;
-/// Periods that are waited for, so that shorter waves are gone, and that are looked at.
+/// Number of periods to wait, until shorter waves have decayed, and number of periods to observe.
 const PERIODS: [f64; 2] = [1.0, 3.0];
 
-/// Sweeps of a method in an order.
+/// A method with an order of its sweeps.
 #[derive(Clone, Copy, Debug)]
 struct SweepVariant {
     method: Method,
     ordering: Ordering,
-    /// How far the velocities of a row diffuse in a sweep, d²: ½ if all contacts are updated at once, and half of that
-    /// under mass splitting, which cuts discs with two contacts in two; 1 for sweeps in an order that stays the same, since
-    /// a row has no loops (D. M. Young 1971: each sweep of Gauss–Seidel shrinks an error as two of Jacobi's do).
+    /// Diffusion of the velocities of a row per sweep, d²: ½ if all contacts are updated simultaneously; half of that
+    /// with mass splitting, which splits discs with two contacts in two; 1 for sweeps in a fixed order, because a row
+    /// has no loops (D. M. Young 1971: each sweep of Gauss–Seidel reduces an error as much as two of Jacobi).
     q: f64,
 }
 
@@ -87,7 +88,7 @@ fn wave_number(discs: usize) -> f64 {
     FRAC_PI_2 / discs as f64
 }
 
-/// Steps of a period, as q has it.
+/// Steps per period, as predicted from q.
 fn period(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     let shrinkage = (-variant.q * f64::from(sweeps) * wave_number(discs).powi(2)).exp();
     TAU / shrinkage.sqrt().acos()
@@ -97,7 +98,7 @@ fn steps(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     (PERIODS[0] + PERIODS[1]) * period(variant, discs, sweeps)
 }
 
-/// Lets a row ring, and tells period and q of its longest wave.
+/// Excites the longest wave of a row, and measures its period and q.
 fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings> {
     let mut scene = column_on_line(discs);
     scene.gap_tolerance = TOUCHES_WITHIN * scene.mean_diameter;
@@ -105,7 +106,7 @@ fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings
     let solver = SolverSettings::to_residual(variant.method, f64::MIN_POSITIVE, sweeps);
     scene.solver = SolverSettings { ordering: variant.ordering, ..solver };
     let mut simulation = scene.simulation()?;
-    // The wave's velocities: none at the wall, and no force at the free end.
+    // The initial wave: zero velocity at the wall, and no force at the free end.
     let k = wave_number(discs);
     let shape: Vec<f64> = (0..discs).map(|disc| (k * (disc as f64 + 0.5)).sin()).collect();
     let mut amplitudes = Vec::new();

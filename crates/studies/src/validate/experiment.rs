@@ -1,4 +1,4 @@
-//! What an experiment is: cases that are computed, and published quantities that are held against what they come to.
+//! Experiments: cases to be computed, and published quantities to compare their results with.
 
 use super::variants::StepVariant;
 use crate::error::Result;
@@ -7,14 +7,14 @@ use crate::statistics::{Mean, mean};
 
 pub(super) struct Experiment {
     pub name: &'static str,
-    /// Above its part of the report and its chart.
+    /// Heading of its section of the report and of its chart.
     pub title: &'static str,
-    /// What is done, and after whom.
+    /// Description and reference.
     pub about: &'static str,
     pub cases: ExperimentCases,
-    /// The published quantities, a row each ([`PublishedQuantity::new`]).
+    /// The published quantities, one row each ([`PublishedQuantity::new`]).
     pub published: &'static str,
-    /// The values of each row that the cases of one solver variant measured.
+    /// Values of each row, measured in the cases of one solver variant.
     pub judge: fn(&Measurements) -> Vec<Measured>,
 }
 
@@ -24,18 +24,18 @@ impl Experiment {
     }
 }
 
-/// The cases of an experiment, those of a quick pass where that is asked for.
+/// The cases of an experiment, for a quick or a full pass.
 pub(super) enum ExperimentCases {
-    /// It is about methods of its own, whichever are chosen.
+    /// Cases with methods of their own, independent of the chosen methods.
     Own(fn(Effort) -> Vec<ExperimentCase>),
-    /// It is computed by each variant that is chosen, but for those by which it has no cases.
+    /// Cases for each chosen variant, except variants for which the function returns none.
     Chosen(fn(Effort, StepVariant) -> Vec<ExperimentCase>),
 }
 
 pub(super) struct ExperimentCase {
-    /// Numbers that tell it from the others of its experiment and variant.
+    /// Parameters that distinguish it from the other cases of its experiment and variant.
     pub at: Vec<(&'static str, f64)>,
-    /// How long it may take, in the unit of all cases: grains times steps.
+    /// Expected cost, in a common unit of all cases: grains times steps.
     pub cost: f64,
     pub run: Box<dyn Fn() -> Result<RunReadings> + Send + Sync>,
 }
@@ -50,7 +50,7 @@ impl ExperimentCase {
     }
 }
 
-/// A case for each value and each seed from 1 on.
+/// One case for each value and each seed, from 1 on.
 pub(super) fn seeded<T: Copy>(
     values: &[T],
     seeds: u32,
@@ -60,16 +60,16 @@ pub(super) fn seeded<T: Copy>(
     values.iter().flat_map(of).map(|(value, seed)| case(value, seed)).collect()
 }
 
-/// Where a number comes from.
+/// Source of a published number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SourceKind {
-    /// Taken from the source, or from a review that quotes it.
+    /// Read in the source, or in a review that quotes it.
     Read,
-    /// Recalled: nobody has looked the number up, so that it gets no verdict.
+    /// Recalled: nobody has looked the number up, so it gets no verdict.
     Memory,
-    /// Follows from the scene, by approximations that the experiment names.
+    /// Derived for the scene, with approximations that the experiment names.
     Derived,
-    /// Follows from the scene, without any.
+    /// Derived for the scene, without approximations.
     Exact,
 }
 
@@ -86,14 +86,14 @@ impl SourceKind {
     }
 }
 
-/// How the measured compares with the published.
+/// Comparison of the measured value with the published one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Agreement {
     Agrees,
     Differs,
-    /// Part of it does, or there is none.
+    /// The interval is partly inside the band, or there is no value.
     NotDecided,
-    /// The published number was recalled.
+    /// The published number was recalled and not read.
     NoVerdict,
 }
 
@@ -108,29 +108,29 @@ impl Agreement {
     }
 }
 
-/// The values of a published quantity that one solver variant measured: the system, and a value for each seed or run.
+/// Values of a published quantity, measured by one solver variant: the system, and one value per seed or run.
 pub(super) type Measured = (String, Vec<f64>);
 
-/// A published quantity, and its mean as one solver variant measured it.
+/// A published quantity, and its mean as measured by one solver variant.
 #[derive(Clone, Debug)]
 pub(super) struct PublishedQuantity {
     pub name: &'static str,
     pub system: String,
-    /// The published value, or the middle of the published values.
+    /// The published value, or the centre of the published values.
     pub published: f64,
-    /// Values within it count as the same: the spread of published values, or the uncertainty from the experiment's size
+    /// Values within it count as equal: the spread of published values, or the uncertainty from the experiment's size
     /// and its idealisations.
     pub band: [f64; 2],
     pub kind: SourceKind,
-    /// Who says so, or how it follows.
+    /// Reference, or derivation.
     pub source: &'static str,
     pub measured: Mean,
 }
 
 impl PublishedQuantity {
-    /// The quantity of a row of a table: name | low end of the band, published value, high end | kind of source: source.
-    /// No correlation is larger than 1, so that the interval of a `rank correlation` ends there. None if the row says
-    /// something else.
+    /// Parses a row of a table: name | low end of the band, published value, high end | kind of source: source. The
+    /// interval of a `rank correlation` is limited to 1, because no correlation is larger. `None` if the row has
+    /// another form.
     pub(super) fn new(row: &'static str, (system, values): Measured) -> Option<Self> {
         let mut cells = row.split(" | ").map(str::trim);
         let (name, numbers, (kind, source)) =
@@ -149,12 +149,12 @@ impl PublishedQuantity {
         Some(Self { name, system, published, band: [low, high], kind, source, measured })
     }
 
-    /// Relative deviation of the mean from the published value; none where that is 0.
+    /// Relative deviation of the mean from the published value; `None` if that is 0.
     pub(super) fn error(&self) -> Option<f64> {
         (self.published != 0.0).then(|| (self.measured.mean / self.published - 1.0).abs())
     }
 
-    /// How the two compare, where all runs are sound.
+    /// The verdict, if all runs are sound.
     pub(super) fn verdict(&self) -> Agreement {
         let (Mean { low, high, .. }, band) = (self.measured, self.band);
         if self.kind == SourceKind::Memory {
@@ -183,10 +183,10 @@ mod tests {
         assert_eq!(quantity(&[2.0, 2.01, 1.99]).verdict(), Agreement::Agrees);
         assert_eq!(quantity(&[2.3, 2.31, 2.29]).verdict(), Agreement::Differs);
         assert_eq!(quantity(&[1.3, 1.31, 1.29]).verdict(), Agreement::Differs);
-        // It straddles an end of the band, or holds all of it.
+        // The interval straddles an end of the band, or contains the whole band.
         assert_eq!(quantity(&[2.1, 2.11, 2.09]).verdict(), Agreement::NotDecided);
         assert_eq!(quantity(&[1.0, 2.0, 3.0]).verdict(), Agreement::NotDecided);
-        // One value alone tells nothing of its spread, and what is no number tells nothing.
+        // A single value gives no spread, and NaN gives no result.
         assert_eq!(quantity(&[2.0]).verdict(), Agreement::NotDecided);
         assert_eq!(quantity(&[f64::NAN, 2.0]).verdict(), Agreement::NotDecided);
         assert!((quantity(&[2.2, 2.2]).error().expect("a value") - 0.1).abs() < 1e-12);
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn tables_have_a_row_for_each_quantity() {
-        // Some quantities are of layers whose bonds have an energy.
+        // Some quantities concern layers whose bonds have an energy.
         let at = vec![("energy", 1.0)];
         let case = MeasuredCase { at, run: RunReadings::default(), wall_secs: 0.0 };
         for experiment in &super::super::EXPERIMENTS {

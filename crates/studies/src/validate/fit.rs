@@ -1,8 +1,8 @@
-//! Laws fitted to what was measured.
+//! Fits of laws to measurements.
 
 use crate::statistics::{mean, slope};
 
-/// What a damped wave x_n = c rⁿ cos(nθ + φ) does in a step.
+/// Change of a damped wave x_n = c rⁿ cos(nθ + φ) per step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampedWave {
     /// θ, rad.
@@ -10,12 +10,12 @@ pub(super) struct DampedWave {
     pub shrinkage: f64,
 }
 
-/// The damped wave through evenly spaced values, by G. de Prony's recursion over `lag` values,
+/// Fits a damped wave to evenly spaced values, by G. de Prony's recursion over `lag` values,
 ///
 /// > x_{n+m} = 2 r^m cos(mθ) x_n − r^{2m} x_{n−m},
 ///
-/// whose two coefficients are those of the least squares. A lag of about a quarter of a period parts them best. NaN
-/// where the values are no damped wave of a longer period than twice the lag.
+/// whose two coefficients are determined by least squares. A lag of about a quarter of a period separates them best.
+/// NaN if the values are not a damped wave with a period longer than twice the lag.
 pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
     let (mut xx, mut xy, mut yy, mut xz, mut yz) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for window in values.windows(2 * lag + 1) {
@@ -36,8 +36,8 @@ pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
     }
 }
 
-/// The power p and the time τ of the law y = y₀ (1 + t/τ)^−p that is nearest to points (t, y), y > 0 and t rising from
-/// 0, in the logarithm of y: for a τ that is linear in ln(1 + t/τ), whose line is known.
+/// The power p and the time τ of the law y = y₀ (1 + t/τ)^−p that best fits points (t, y) in the logarithm of y, with y
+/// > 0 and t increasing from 0. For a given τ the law is linear in ln(1 + t/τ), so the fit is a straight line.
 pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     let line = |tau: f64| {
         let line: Vec<(f64, f64)> =
@@ -48,7 +48,7 @@ pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     [-line(tau).0, tau]
 }
 
-/// The number with the least misfit: on a grid in ratio around a first guess, made finer thrice.
+/// The number with the least misfit, on a geometric grid around a first guess that is refined three times.
 pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
     let (mut best, mut ratio) = (guess, 1e3f64);
     for _ in 0..4 {
@@ -60,7 +60,7 @@ pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
     best
 }
 
-/// Slope of the line of least squares, and the sum of the squares that it leaves.
+/// Slope of the least-squares line, and the remaining sum of squares.
 pub(super) fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
     let slope = slope(points);
     let (x_mean, y_mean) = middle(points);
@@ -68,13 +68,13 @@ pub(super) fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
     (slope, points.iter().map(left).sum())
 }
 
-/// The means of both coordinates, through which the line of least squares goes.
+/// The means of both coordinates, which lie on the least-squares line.
 pub(super) fn middle(points: &[(f64, f64)]) -> (f64, f64) {
     let mean = |of: fn(&(f64, f64)) -> f64| mean(&points.iter().map(of).collect::<Vec<_>>()).mean;
     (mean(|point| point.0), mean(|point| point.1))
 }
 
-/// The power law nearest to points in their logarithms: its exponent, and what it has at 1.
+/// The power law that best fits points in their logarithms: its exponent, and its value at 1.
 pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     let logarithms: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let exponent = slope(&logarithms);
@@ -82,10 +82,10 @@ pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     (exponent, (y - exponent * x).exp())
 }
 
-/// Correlation of the ranks of two columns (C. Spearman 1904). Equal values share the mean of their ranks. Not a number
-/// where a value is none, or where all of a column are equal.
+/// Rank correlation of two columns (C. Spearman 1904). Equal values share their mean rank. NaN if a value is NaN, or if
+/// all values of a column are equal.
 pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
-    // Twice the rank, from the middle of the column.
+    // Twice the rank, relative to the middle of the column.
     let ranks = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
         let compare = |one: &(f64, f64), other: &(f64, f64)| {
             of(one).partial_cmp(&of(other)).map_or(f64::NAN, |order| f64::from(order as i8))

@@ -1,13 +1,14 @@
-//! A narrow silo that is closed: what its walls carry of the weight (H. A. Janssen 1895).
+//! A narrow closed silo: the part of the weight that its walls carry (H. A. Janssen 1895).
 //!
-//! Between two walls at a distance W, where the pressure across is K times that along the height and friction at the
-//! walls bears all that it can, a slice of height dz has W dp = ρ_b g W dz − 2 μ_w K p dz, so that under the surface
+//! Between two walls at a distance W, let the horizontal pressure be K times the vertical one, and the friction at the
+//! walls fully mobilised. Then a slice of height dz satisfies W dp = ρ_b g W dz − 2 μ_w K p dz, so that below the
+//! surface
 //!
 //! > p = λ ρ_b g (1 − e^(−z/λ)),  λ = W/(2 μ_w K),
 //!
-//! and of the weight of a filling of height H the bottom carries the share (λ/H)(1 − e^(−H/λ)).
+//! and the bottom carries the fraction (λ/H)(1 − e^(−H/λ)) of the weight of a filling of height H.
 //!
-//! Friction bears all that it can where grains slide down the walls: the bottom is lowered slowly while it is weighed.
+//! Friction is fully mobilised if grains slide down the walls, so the bottom is lowered slowly while it is weighed.
 
 use glam::DVec2;
 
@@ -33,18 +34,18 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// μ, between grains and at the walls.
+/// Coefficient of friction μ, between grains and at the walls.
 const FRICTION: f64 = 0.5;
 /// W, in diameters.
 const WIDTH: f64 = 8.0;
-/// Grains that a square of the width takes, at a solid fraction of 0.82.
+/// Number of grains in a square of side W, at a solid fraction of 0.82.
 const GRAINS_OF_SQUARE: f64 = 1.04 * WIDTH * WIDTH;
-/// How far the bottom is lowered, in diameters, and from which part of that on it is weighed.
+/// Distance by which the bottom is lowered, in diameters, and the fraction of it after which weighing begins.
 const LOWERED: f64 = 0.5;
 const WEIGHED_FROM: f64 = 0.2;
-/// How fast, in √(g d).
+/// Speed of the bottom, in √(g d).
 const SPEED: f64 = 0.02;
-/// The heights whose loads are compared, in W.
+/// Heights whose loads are compared, in W.
 const HIGH: f64 = 5.0;
 const HALF_AS_HIGH: f64 = 2.5;
 
@@ -82,7 +83,7 @@ fn weigh(grains: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> 
     let mut loads = Vec::new();
     run.run_until(secs, |simulation| loads.push(on_bottom(simulation)))?;
     let mass: f64 = run.simulation.world().grains.masses.iter().sum();
-    // Twice the height of the centre of mass above the bottom: the surface is not even.
+    // Twice the height of the centre of mass above the bottom, because the surface is uneven.
     let height = 2.0 * (centre_of_mass(&run.simulation).y / DIAMETER + LOWERED);
     Ok(run.with([
         ("share", mean(&loads).mean / (mass * GRAVITY)),
@@ -91,19 +92,19 @@ fn weigh(grains: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> 
     ]))
 }
 
-/// What the bottom carries, N.
+/// Load on the bottom, N.
 fn on_bottom(simulation: &Simulation) -> f64 {
     let contacts = simulation.moment().contacts.into_iter();
     let of_bottom = contacts.filter(|contact| contact.other == OtherBody::Boundary(0));
     of_bottom.map(|contact| contact.force.y).sum()
 }
 
-/// The share that the bottom carries of a filling of so many λ.
+/// Fraction of a filling of height `heights`·λ that the bottom carries.
 fn share(heights: f64) -> f64 {
     -(-heights).exp_m1() / heights
 }
 
-/// λ of shares that were measured at heights, by least squares, and the root mean square that it leaves.
+/// λ fitted to fractions at several heights by least squares, and the remaining root mean square.
 fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     let misfit = |length: f64| -> f64 {
         let square = |(height, found): &(f64, f64)| (found - share(height / length)).powi(2);

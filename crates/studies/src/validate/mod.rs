@@ -1,13 +1,12 @@
-//! Published experiments: what was measured or derived of each, what Slump measures with an interval, whether the
-//! two agree, and what that cost, for a choice of methods, time steps and budgets.
+//! Comparison with published experiments: for a choice of methods, time steps and budgets, it measures published
+//! quantities with intervals, judges their agreement, and reports the cost.
 //!
-//! One file an experiment, and a row in [`EXPERIMENTS`]. A verdict is of the whole interval against a band: what lies
-//! within agrees, what lies outside differs, and what does neither is not decided. Numbers that were recalled, not
-//! read, have generous bands and say so.
+//! Each experiment has one file and one row in [`EXPERIMENTS`]. A verdict compares the whole interval with a band: it
+//! agrees if the interval lies inside, differs if it lies outside, and is not decided otherwise. Numbers that were
+//! recalled and not read are marked as such and have wide bands.
 //!
-//! The folder holds `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and
-//! `measured/`: journals of finished runs, by program and processor, so that the same command goes on where it was
-//! stopped.
+//! The folder contains `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and `measured/` with
+//! journals of finished runs by program and processor. The same command therefore resumes if it was stopped.
 
 mod cliff;
 mod cohesive_shear;
@@ -89,10 +88,10 @@ fn experiment_names() -> Vec<&'static str> {
     EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
 }
 
-/// Runs experiments into a folder. The report says that `version` of the program made it.
+/// Runs experiments into a folder. `version` is the program's version in the report.
 ///
 /// # Errors
-/// Where a value is outside its range, the folder cannot be written, or a scene is not sound.
+/// If a value is outside its range, the folder cannot be written, or a scene is invalid.
 pub fn validate(options: &ValidateOptions, version: &str) -> Result<()> {
     let started = Instant::now();
     let ValidateOptions { experiments, out, quick, stepper, .. } = options;

@@ -1,11 +1,11 @@
-//! Static packings: how dense they are, how many contacts hold a disc, and how forces are distributed.
+//! Static packings: their solid fraction, coordination, and distribution of forces.
 //!
-//! Discs fall through a medium into a box and come to rest. N discs that are held, less rattlers, have 2N equations of
-//! balance without friction and 3N with it. Rigid discs without friction have just as many contacts as that needs,
-//! N_c = 2N, so Z = 2N_c/N = 4; the least that friction can do with is N_c = 3N/2, Z = 3, since a contact then carries
-//! two forces. A contact with a wall counts as one between discs does.
+//! Discs fall through a medium into a box and come to rest. N supported discs, without rattlers, have 2N equations of
+//! balance without friction and 3N with it. Frictionless rigid discs have exactly as many contacts as these need, N_c =
+//! 2N, so Z = 2N_c/N = 4. With friction a contact carries two forces, so the minimum is N_c = 3N/2, Z = 3. A contact
+//! with a wall counts like one between discs.
 //!
-//! Forces are taken relative to their mean at the same height, as in a box under gravity that grows with depth.
+//! Forces are relative to their mean at the same height, because in a box under gravity the mean grows with depth.
 
 use std::collections::BTreeMap;
 
@@ -29,13 +29,13 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// What stands for μ → ∞.
+/// Stands for μ → ∞.
 const LARGE_FRICTION: f64 = 10.0;
-/// A contact bears a force where that is more than so much of the mean.
+/// Fraction of the mean force above which a contact bears a force.
 const BEARS_FROM: f64 = 1e-6;
-/// What is nearer to a wall or the surface says nothing of the inside, in diameters.
+/// Distance from walls and surface within which grains are left out, in diameters.
 const MARGIN: f64 = 2.5;
-/// Height of the layers in which mean forces are taken, in diameters.
+/// Height of the layers over which forces are averaged, in diameters.
 const LAYER: f64 = 3.0;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -62,7 +62,7 @@ fn pack(
     scene.duration_secs = 60.0;
     let run = settled(&scene)?;
     let moment = run.simulation.moment();
-    // The cells away from walls and surface.
+    // Only cells away from walls and surface.
     let margin = MARGIN * DIAMETER;
     let surface = moment.grains.iter().map(|grain| grain.position.y).fold(0.0, f64::max);
     let solid_fraction = solid_fraction(&moment, |place| {
@@ -82,7 +82,7 @@ fn pack(
     ]))
 }
 
-/// The contacts that bear a force and lead to no rattler.
+/// The contacts that bear a force and do not involve a rattler.
 fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState> {
     let sum: f64 = moment.contacts.iter().map(|contact| contact.force.length()).sum();
     let least = BEARS_FROM * sum / moment.contacts.len() as f64;
@@ -97,7 +97,7 @@ fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState>
     moment.contacts.iter().filter(bears).collect()
 }
 
-/// β of the forces f > 1: of an exponential tail the mean of f − 1 is 1/β.
+/// β of the forces f > 1. For an exponential tail the mean of f − 1 is 1/β.
 fn tail(bearing: &[&ContactState]) -> f64 {
     let mut layers: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for contact in bearing {

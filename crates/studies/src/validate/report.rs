@@ -1,4 +1,4 @@
-//! What was measured in words, as a table, and as a figure.
+//! The results in words, as a table and as a figure.
 
 use std::fmt::Write as _;
 
@@ -137,7 +137,7 @@ fn of_variant(runs: &ExperimentRuns) -> String {
     text
 }
 
-/// Draws a point for each experiment and variant: how far off its quantities are, and how fast it was.
+/// Draws one point for each experiment and variant: the error of its quantities against its speed.
 pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     let variants = distinct(all.iter().filter_map(|runs| runs.variant));
     let names = distinct(all.iter().map(|runs| runs.experiment.name));
@@ -185,14 +185,14 @@ pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     Sheet { size: (1300, 120 + 46 * names.len() as u32), charts, caption }
 }
 
-/// Mean relative error of the quantities of an experiment by one variant, as it is drawn; NaN where one has no value, since
-/// the others alone would look better than they are.
+/// Mean relative error of the quantities of an experiment by one variant, limited to the axis. NaN if a quantity has no
+/// value, because the mean of the others would be too favourable.
 fn error(runs: &ExperimentRuns) -> f64 {
     let errors = runs.judged().into_iter().filter_map(|(quantity, _)| quantity.error());
     mean(&errors.collect::<Vec<_>>()).mean.clamp(LEAST_ERROR, MOST_ERROR)
 }
 
-/// A colour a method and time step; discs for sweeps and rings for residuals, the larger the more work.
+/// One colour per method and time step; discs for sweeps and rings for residuals, larger for more work.
 fn look_of(variant: &StepVariant, variants: &[StepVariant]) -> (String, Rgb, Look) {
     let kinds = distinct(variants.iter().map(|one| (one.method, one.time_step_secs)));
     let kind = (variant.method, variant.time_step_secs);

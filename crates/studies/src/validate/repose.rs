@@ -1,5 +1,5 @@
-//! Slopes: how steep the surface lies in a drum that turns, at which angle a layer begins to flow, and that both grow
-//! with cohesion.
+//! Slopes: the angle of the surface in a rotating drum, the angle at which a layer begins to flow, and the increase of
+//! both with cohesion.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -27,12 +27,12 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Scenes, by their number in a case.
+/// Numbers of the scenes in a case.
 const DRUM: f64 = 0.0;
 const INCLINE: f64 = 1.0;
-/// From when on the drum's slope is taken, s: three radians turned.
+/// Time from which on the drum's slope is measured, s: after three radians.
 const STEADY_SECS: f64 = 1.5;
-/// How far the layer goes before it counts as flowing, in diameters.
+/// Displacement at which the layer counts as flowing, in diameters.
 const FLOWN: f64 = 0.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -55,7 +55,7 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     cases
 }
 
-/// The scene with its grains' sizes dealt out anew.
+/// The scene with the sizes of its grains in random order.
 pub(super) fn shuffled(mut scene: Scene, seed: u64) -> Scene {
     let mut radii: Vec<f64> = scene.grains.iter().map(|grain| grain.radius).collect();
     radii.shuffle(&mut Pcg64::seed_from_u64(seed));
@@ -86,7 +86,7 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
         let time_secs = run.simulation.time_secs();
         run.run_until(time_secs + 0.01, |_| ())?;
     }
-    // What has not flown at the steepest flows nowhere.
+    // A layer that does not flow at the largest angle does not flow at all.
     let angle = TILT_RATE * (run.simulation.time_secs() - LEVEL_SECS);
     Ok(run.with([("angle", angle.to_degrees())]))
 }

@@ -7,7 +7,7 @@ use crate::harness::{Case, Runner, Threads};
 
 pub(super) struct ExperimentRuns {
     pub experiment: &'static Experiment,
-    /// None where the experiment has methods of its own.
+    /// `None` if the experiment has its own methods.
     pub variant: Option<StepVariant>,
     pub cases: Vec<MeasuredCase>,
 }
@@ -17,7 +17,7 @@ impl ExperimentRuns {
         words(self.variant)
     }
 
-    /// Why no verdict can be had of it, where none can: what is left of its runs is no fair sample.
+    /// The reason why no verdict is possible, if any: failed runs, whose remainder is not a fair sample.
     pub(super) fn spoilt(&self) -> Option<String> {
         let blew_up = self.cases.iter().filter(|case| case.run.blew_up).count();
         let lost = self.cases.iter().filter(|case| case.run.lost_grains > 0).count();
@@ -42,7 +42,7 @@ impl ExperimentRuns {
         self.experiment.rows().zip((self.experiment.judge)(&sound)).filter_map(judge).collect()
     }
 
-    /// True if a step has a number of sweeps at most, and nothing that it is to be solved to.
+    /// True if steps only have a maximum number of sweeps, and no tolerance.
     pub(super) fn has_sweeps_alone(&self) -> bool {
         self.variant.is_none_or(|StepVariant { stepper, budget, .. }| {
             !stepper.reads("solver") || matches!(budget, SolveBudget::Sweeps(_))
@@ -58,7 +58,7 @@ impl ExperimentRuns {
         simulated / self.wall_secs()
     }
 
-    /// Part of its steps that were not solved as asked.
+    /// Fraction of unsolved steps.
     pub(super) fn unsolved(&self) -> f64 {
         let sum = |number: fn(&RunReadings) -> u64| {
             self.cases.iter().map(|case| number(&case.run)).sum::<u64>() as f64
@@ -71,7 +71,7 @@ fn words(variant: Option<StepVariant>) -> String {
     variant.map_or("methods of its own".to_owned(), |variant| variant.words())
 }
 
-/// Runs what is not finished yet, and gives all runs in the order of the report.
+/// Runs the unfinished cases, and returns all runs in the order of the report.
 pub(super) fn run_all(
     experiments: &[&'static Experiment],
     variants: &[StepVariant],

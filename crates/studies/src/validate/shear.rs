@@ -1,17 +1,18 @@
-//! Plane shear: friction and solid fraction of grains between rough plates, of which one is drawn along under a constant
-//! pressure, against the inertial number.
+//! Plane shear: friction and solid fraction of grains between rough plates, one of which moves along under a constant
+//! pressure, as functions of the inertial number.
 //!
-//! Rigid grains of mass m in a plane have no time of their own: what a shear rate γ̇ does under the pressure P, a force a
-//! length, hangs on I = γ̇ √(m/P) alone. In the published definition γ̇ d √(ρ_g/P) the density of a disc is that of its
-//! square or of itself, which makes a factor of up to 2/√π = 1.13 in I; the band of the slopes has room for it.
+//! Rigid grains of mass m in a plane have no intrinsic time. The effect of a shear rate γ̇ under the pressure P, a
+//! force per length, therefore only depends on I = γ̇ √(m/P). In the published definition γ̇ d √(ρ_g/P), the density
+//! refers to the disc's bounding square or to the disc itself, which makes a factor of up to 2/√π = 1.13 in I. The band
+//! of the slopes includes it.
 //!
-//! γ̇ is the slope of the velocity over the height away from the plates, at which grains slip. T and N are the means of
+//! γ̇ is the slope of the velocity over the height, away from the plates, where grains slip. T and N are the means over
 //! both plates.
 //!
-//! What is not steady in a layer of height H dies away over (H/d)² I²/(π² T/N) heights of shear, since what hands the
-//! momentum on is T = (T/N) P: eleven to eighteen at H = 37 d and I = 0.2. So layers begin with the profile that they
-//! are to have, linear from plate to plate, are sheared for three of those before they are watched, and held to what a
-//! steady flow must do: pull at both plates alike.
+//! A transient in a layer of height H decays over a shear of (H/d)² I²/(π² T/N) heights, because momentum is
+//! transferred by T = (T/N) P. That is eleven to eighteen heights at H = 37 d and I = 0.2. Layers therefore begin with
+//! the expected linear profile from plate to plate, and are sheared for three decay lengths before the measurement. The
+//! flow is checked for steadiness: both plates must exert the same force.
 
 use std::f64::consts::PI;
 
@@ -47,20 +48,21 @@ const FRICTION: f64 = 0.4;
 const RESTITUTION: f64 = 0.1;
 /// P, in m g/d: √(m/P) is 0.03 s.
 pub(super) const PRESSURE: f64 = 1.0;
-/// Solid fraction about which layers have, for their height.
+/// Approximate solid fraction of the layers, to compute their height.
 const DENSE: f64 = 0.79;
-/// How long the plate takes to press loose grains together, s.
+/// Time in which the plate compresses the loose grains, s.
 const PRESSING_SECS: f64 = 0.5;
-/// How far a layer is sheared at the least, and then again while it is watched, in heights of it.
+/// Least shear of a layer before the measurement, and shear during the measurement, in heights of the layer.
 const STRAINS: [f64; 2] = [1.5, 3.0];
-/// How many of the times in which what is not steady dies away a layer is sheared besides, for [`SLOWEST`].
+/// Number of decay lengths of a transient, computed with [`SLOWEST`], by which a layer is also sheared before the
+/// measurement.
 const TIMES_TO_STEADY: f64 = 3.0;
-/// T/N of a layer in which it dies away slowly.
+/// T/N of a layer with slow decay.
 const SLOWEST: f64 = 0.4;
 const MOMENTS: u32 = 250;
-/// Each so many of them solid fractions are taken.
+/// Interval, in moments, between measurements of the solid fraction.
 const MOMENTS_OF_CELLS: u32 = 5;
-/// What is nearer to a plate says nothing of the inside, in diameters.
+/// Distance from a plate within which grains are left out, in diameters.
 const MARGIN: f64 = 2.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -75,20 +77,20 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &speeds.iter().map(layer).collect::<Vec<_>>())
 }
 
-/// What tells a sheared layer from others.
+/// Parameters of a sheared layer.
 #[derive(Clone, Debug)]
 pub(super) struct LayerKind {
-    /// Numbers by which cases are looked up.
+    /// Parameters by which cases are looked up.
     pub at: Vec<(&'static str, f64)>,
-    /// I that is aimed at.
+    /// Nominal inertial number I.
     pub inertial: f64,
     /// Bond number.
     pub bond: f64,
-    /// The work that slowly breaks a bond, in m (γ̇ d)²; that of the stepper's own numbers where there is none.
+    /// Work that slowly breaks a bond, in m (γ̇ d)²; `None` for the value of the stepper's own parameters.
     pub breaking_energy: Option<f64>,
 }
 
-/// Cases of layers; none where the method does not move walls that a force drives.
+/// Cases of layers; empty if the stepper does not support walls that a force drives.
 pub(super) fn layers(
     effort: Effort,
     variant: StepVariant,
@@ -125,18 +127,18 @@ impl ShearedLayer {
         f64::from(self.cell.columns) * f64::from(self.cell.rows)
     }
 
-    /// Its height when pressed together, in diameters.
+    /// Height of the compressed layer, in diameters.
     fn height(&self) -> f64 {
         let area = 0.25 * PI * self.grains();
         area / (DENSE * f64::from(self.cell.wide))
     }
 
-    /// γ̇ that is aimed at, 1/s: √(m/P) = √(d/(g P)), P in m g/d.
+    /// Nominal γ̇, 1/s: √(m/P) = √(d/(g P)), P in m g/d.
     fn rate(&self) -> f64 {
         self.kind.inertial / inertial_secs()
     }
 
-    /// How far it is sheared until its flow is steady, in heights of it (see the module).
+    /// Shear until the flow is steady, in heights (see the module).
     fn strains_to_steady(&self) -> f64 {
         let times = (self.height() * self.kind.inertial).powi(2) / (PI * PI * SLOWEST);
         STRAINS[0] + TIMES_TO_STEADY * times
@@ -161,7 +163,7 @@ impl ShearedLayer {
         scene
     }
 
-    /// Shears it until it is steady, and then watches it.
+    /// Shears the layer until it is steady, and then measures it.
     fn run(&self, variant: StepVariant) -> Result<RunReadings> {
         let mut run = WatchedRun::start(&self.scene(variant))?;
         let begin_secs = PRESSING_SECS + self.strains_to_steady() / self.rate();
@@ -196,7 +198,7 @@ fn inertial_secs() -> f64 {
     (DIAMETER / (GRAVITY * PRESSURE)).sqrt()
 }
 
-/// What the lower plate does to the grains, and the upper one, N.
+/// Forces of the lower and of the upper plate on the grains, N.
 fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     let on = |is_upper: bool| -> DVec2 {
         let of_it = moment.contacts.iter().filter(|contact| {
@@ -207,7 +209,7 @@ fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     [on(false), on(true)]
 }
 
-/// The heights between which a layer is looked at, m.
+/// Heights between which a layer is measured, m.
 fn inside(moment: &Moment) -> [f64; 2] {
     let top = moment.surroundings.fixed_discs.iter().map(|disc| disc.position.y);
     [MARGIN * DIAMETER, top.fold(0.0, f64::max) - MARGIN * DIAMETER]
@@ -234,7 +236,7 @@ const PUBLISHED: &str = "
 fn judge(all: &Measurements) -> Vec<Measured> {
     let (grains, numbers) = (all.first("grains"), all.list("inertial"));
     let system = format!("{grains} grains, I ≈ {numbers}, {}", all.seeds());
-    // The value at I = 0 of the line through a reading of each seed, and its slope.
+    // The value at I = 0 and the slope of a line fitted to a reading, for each seed.
     let lines = |reading: &str| -> [Vec<f64>; 2] {
         let line = |of_seed: Measurements| {
             let points = of_seed.points(|case| (case.reading("inertial"), case.reading(reading)));
@@ -248,8 +250,8 @@ fn judge(all: &Measurements) -> Vec<Measured> {
     values.map(|values| (system.clone(), values)).collect()
 }
 
-/// How much more the upper plate pulls than the lower one in the layers with the largest value of a number, over both
-/// pulls: while a flow is not steady yet, one plate still accelerates it.
+/// Relative difference between the forces of the upper and the lower plate, in the layers with the largest value of a
+/// parameter. It is not 0 while one plate still accelerates the flow.
 pub(super) fn imbalances(all: &Measurements, name: &str) -> Vec<f64> {
     let most = all.values(name).last().copied().unwrap_or(f64::NAN);
     all.with(name, most).readings("imbalance")
@@ -282,7 +284,7 @@ mod tests {
             if stepper == Stepper::Range {
                 let strength = bond / (2.0 * PRESSURE);
                 let found = strength * scene.parameters.debonding_distance / inertial.powi(2);
-                // Grains have sizes, and their mean mass is a few per cent above that of the mean size.
+                // Grains vary in size, and their mean mass is a few per cent above that of the mean size.
                 assert!((found / energy - 1.0).abs() < 0.1, "{found}");
             }
         }

@@ -1,7 +1,8 @@
-//! A silo with a flat bottom: how fast grains flow out of an orifice of width W.
+//! A silo with a flat bottom: the discharge rate of an orifice of width W.
 //!
-//! Q ∝ ρ_b √g (W − k d)^{3/2} in the plane (W. A. Beverloo, H. A. Leniger, J. van de Velde 1961, in two dimensions). So
-//! Q^{2/3} is linear in W and vanishes at k d. That Q goes with √g holds of rigid grains by dimensions alone.
+//! Q ∝ ρ_b √g (W − k d)^{3/2} in the plane (W. A. Beverloo, H. A. Leniger, J. van de Velde 1961, in two dimensions).
+//! Therefore Q^{2/3} is linear in W and vanishes at k d. For rigid grains, Q ∝ √g follows from dimensional analysis
+//! alone.
 
 use glam::DVec2;
 
@@ -28,14 +29,14 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const FRICTION: f64 = 0.5;
-/// Parts of the mass that are out when the discharge is taken.
+/// Discharged mass fractions at the beginning and at the end of the measurement.
 const OUT: [f64; 2] = [0.08, 0.4];
-/// When the plate falls, s.
+/// Time at which the plate falls, s.
 const RELEASE_SECS: f64 = 0.02;
-/// The orifice at which gravity is varied, in diameters, and how many times it is.
+/// Orifice for the test with stronger gravity, in diameters, and the factor of gravity.
 const OF_GRAVITY: f64 = 8.0;
 const TIMES_GRAVITY: f64 = 4.0;
-/// k where the exponent is looked for.
+/// Assumed k in the test of the exponent.
 const TAKEN_K: f64 = 1.4;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -78,7 +79,7 @@ fn discharge(
     let mut run = WatchedRun::start(&open)?;
     let all: f64 = run.simulation.world().grains.masses.iter().sum();
     let mut fallen = Vec::new();
-    // Some times what it takes: where it jams, there is no discharge.
+    // Several times the expected duration. If the flow jams, there is no discharge rate.
     let limit_secs = 4.0 / gravity.sqrt();
     let mut part = 0.0;
     while part < OUT[1] && run.simulation.time_secs() < limit_secs {

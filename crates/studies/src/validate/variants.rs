@@ -1,4 +1,4 @@
-//! The solver variants that experiments are computed by: methods, each with every time step and budget.
+//! The solver variants of experiments: methods, each with every time step and budget.
 
 use std::fmt::{Debug, Display};
 
@@ -7,19 +7,19 @@ use crate::scene::Scene;
 use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings};
 
-/// Sweeps within which a step is to be solved to a residual.
+/// Largest number of sweeps to solve a step to a residual.
 const MOST_SWEEPS: u32 = 1_000;
 
-/// What is run if no effort is given for a method that is not `auto`.
+/// Default budgets of a method other than `auto`.
 const UNASKED: [SolveBudget; 2] = [SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SolveBudget {
-    /// By so many sweeps, whatever they come to.
+    /// A fixed number of sweeps, whatever the residual.
     Sweeps(u32),
     /// To this residual, within [`MOST_SWEEPS`].
     Residual(f64),
-    /// As every step is solved by default: to an estimated error of its velocities.
+    /// The default: to an estimated error of the velocities.
     Default,
 }
 
@@ -52,7 +52,7 @@ impl StepVariant {
             stepper if stepper.reads("solver") => {
                 format!("{stepper}, {method}, {of_step}, {}", budget.words())
             }
-            // Its effort is its own.
+            // This stepper determines its effort itself.
             stepper => format!("{stepper}, {of_step}"),
         }
     }
@@ -71,11 +71,10 @@ impl StepVariant {
     }
 }
 
-/// Every method with every time step and budget that was asked for, and in the place of an empty list what is chosen
-/// unasked.
+/// Every requested method with every requested time step and budget. An empty list stands for the defaults.
 ///
 /// # Errors
-/// Names the first value outside its range, one that is given twice, or one that the stepper does not read.
+/// Names the first value that is outside its range, is given twice, or is not read by the stepper.
 pub(super) fn step_variants(
     stepper: Stepper,
     methods: &[Method],

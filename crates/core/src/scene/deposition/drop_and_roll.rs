@@ -1,11 +1,11 @@
 //! Drop and roll: the quick way to make a pile.
 //!
-//! Discs are dropped one by one, and each rolls to where two others hold it ([`dropped`]). That
-//! packing carries itself but for few grains, since of two supports each bears one side's weight; what
-//! it lacks are the forces. They travel by about a layer a sweep, so the pile first sways up and down
-//! as a whole, in a number of steps that grows with its layers. A medium damps just that motion:
-//! with less the pile goes on swaying, with more it creeps. Then the medium thins until grains whose
-//! supports gave way can fall, and is gone before the pile is called at rest.
+//! Discs are dropped one by one, and each rolls until two others hold it ([`dropped`]). This packing carries itself
+//! except for a few grains, because each of the two supports carries the weight of one side. Only the contact forces
+//! are missing. They travel by about a layer per sweep, so the pile first sways up and down as a whole, for a number
+//! of steps that grows with its layers. A medium damps this motion: with less damping the pile keeps swaying, with
+//! more it creeps. Then the medium becomes thin, so that grains whose supports gave way can fall, and is removed
+//! before the pile counts as at rest.
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -23,44 +23,44 @@ use crate::sim::Simulation;
 use crate::solver::SolverSettings;
 use crate::world::{Disc, Grain, Parameters};
 
-/// Of so many places that a disc may roll to it takes the lowest. With one the deposit has slopes that
-/// avalanche for many steps when the pile is let go; more than a few change little.
+/// Number of random places tried per disc; the disc takes the lowest. With one try the deposit has slopes that
+/// avalanche for many steps when the pile is released. More than a few change little.
 const TRIES: usize = 4;
-/// Part of its height by which a pile is pressed together before it settles, so that all contacts touch. Less, and the
-/// errors of the first steps (gΔt² = 8e-5 d) open them; more adds to the overlap that stays.
+/// Fraction of its height by which a pile is compressed before it settles, so that all contacts touch. If smaller,
+/// the errors of the first steps (gΔt² = 8e-5 d) open contacts; if larger, the remaining overlap is larger.
 const PRESSED: f64 = 2e-4;
-/// Time step of the settling, s. It stays the same: a longer one later on opens the contacts again,
-/// as steps by its square are larger than their overlaps.
+/// Time step of the settling, s. It stays constant: a longer step later would open the contacts again, because errors
+/// proportional to its square exceed their overlaps.
 const TIME_STEP_SECS: f64 = 2e-4;
-/// Most sweeps of a step. Steps that go on from each other's forces do more for the pile than
-/// sweeps that end one step well.
+/// Largest number of sweeps per step. Steps that start from each other's forces help the pile more than sweeps that
+/// end one step well.
 const SWEEPS: u32 = 20;
-/// Relative change of the impulses at which a step's sweeps end.
+/// Relative change of the impulses at which the sweeps of a step stop.
 const TOLERANCE: f64 = 1e-7;
-/// Part of the velocities that the medium takes in each step, times the number of layers: twice the
-/// frequency of the slowest sway. Half of it and the pile sways, twice and it creeps: both double the time.
+/// Fraction of the velocities that the medium removes per step, times the number of layers: twice the frequency of
+/// the slowest sway. With half of it the pile sways, with twice as much it creeps; both double the time.
 const DAMPING_BY_LAYERS: f64 = 7.0;
-/// The medium takes no more than this part in a step.
+/// Largest fraction that the medium removes per step.
 const MOST_DAMPING: f64 = 0.2;
-/// Speed of half of all grains, in √(g·d), below which the pile no longer sways and the medium thins.
+/// Median speed of the grains, in √(g·d), below which the pile no longer sways and the medium becomes thin.
 const STILL_SPEED: f64 = 1e-3;
-/// A grain falls through the thin medium at this speed, in √(g·d).
+/// Terminal speed of a grain falling through the thin medium, in √(g·d).
 const TERMINAL_SPEED: f64 = 0.5;
-/// The medium goes where the mean kinetic energy of a grain is below this, in m g d, and a pile is at
-/// rest that stays below ten times that without it.
+/// Mean kinetic energy of a grain, in m g d, below which the medium is removed. Without the medium, a pile that stays
+/// below ten times this value is at rest.
 const REST_ENERGY: f64 = 1e-7;
-/// Nor may more than one grain in [`GRAINS_A_MOVING_ONE`] be faster than this at rest, in √(g·d): it
-/// would be falling.
+/// Speed, in √(g·d), above which a grain counts as falling. At rest at most one grain in [`GRAINS_A_MOVING_ONE`] is
+/// faster.
 const REST_SPEED: f64 = 1e-2;
-/// In a large pile there always is a grain that tips over somewhere, so that waiting for the last would take
-/// the longer the larger the pile.
+/// Number of grains per moving grain allowed at rest. In a large pile some grain always tips over somewhere, so
+/// waiting for the last would take longer the larger the pile.
 const GRAINS_A_MOVING_ONE: usize = 10_000;
 const STEPS_PER_LOOK: u32 = 10;
-/// Steps after which it is given up, and more for each layer.
+/// Number of steps after which the settling fails: a constant, and an addition per layer.
 const LIMIT_STEPS: [f64; 2] = [10_000.0, 100.0];
 
-/// Drops discs of the given radii (m, each above 0) one by one at random places between walls at
-/// ± `half_width` (m, at least the largest radius) onto fixed discs. Where they come to lie, in their order.
+/// Drops discs of the given radii (m, each above 0) one by one at random places between walls at ± `half_width` (m,
+/// at least the largest radius) onto fixed discs. Returns their centres at rest, in order.
 pub fn drop_and_roll(
     radii: &[f64],
     base: &[Disc],
@@ -154,20 +154,20 @@ pub(super) fn settled(
     }
 }
 
-/// What slows the grains.
+/// The medium that slows the grains.
 #[derive(Clone, Copy)]
 enum Medium {
     /// So thick that the pile does not sway.
     Thick {
         damping: f64,
     },
-    /// So thin that grains fall.
+    /// So thin that grains can fall.
     Thin,
     None,
 }
 
 impl Medium {
-    /// The part of the velocities that it takes in a step.
+    /// The fraction of the velocities removed per step.
     fn damping(self) -> f64 {
         match self {
             Self::Thick { damping } => damping,
@@ -177,10 +177,10 @@ impl Medium {
     }
 }
 
-/// How much the grains move: speeds of their centres or rims in √(g·d), energy in m g d.
+/// Motion of the grains: speeds of their centres or rims in √(g·d), energy in m g d.
 struct GrainSpeeds {
     energy: f64,
-    /// Of all but those few that may move.
+    /// Fastest grain, except for the few that may move.
     fastest: f64,
     median_speed: f64,
 }
@@ -203,7 +203,7 @@ impl GrainSpeeds {
         self.energy <= energy && self.fastest <= REST_SPEED
     }
 
-    /// Speed in units of the one that counts as rest, by energy or by the fastest.
+    /// Speed relative to that of a pile at rest, the larger of the ratios by energy and by the fastest grain.
     fn over_rest(&self) -> f64 {
         (self.energy / REST_ENERGY).sqrt().max(self.fastest / REST_SPEED)
     }

@@ -1,4 +1,4 @@
-//! New piles: discs put into a box over a rough base and left to come to rest, by rain or quickly.
+//! New piles: discs put into a box over a rough base and left to come to rest, by rain or by drop and roll.
 
 mod drop_and_roll;
 mod rain;
@@ -19,19 +19,18 @@ use crate::sim::{Observables, Simulation};
 use crate::solver::SolverSettings;
 use crate::world::{Boundary, Grain, Parameters};
 
-/// Makes an initial state. `progress` is called now and then; where it returns false, the settling
-/// is given up with an error.
+/// Makes an initial state. `progress` is called now and then; if it returns false, the settling stops with an error.
 ///
 /// # Errors
-/// Where a value is outside its range, the grains do not come to rest, or `progress` says so.
+/// If a value is outside its range, the grains do not come to rest, or `progress` returns false.
 pub fn settle(pile: &NewPile, progress: impl FnMut(Settling) -> bool) -> Result<Vec<Grain>> {
     Ok(deposit(pile, progress)?.grains)
 }
 
-/// The same, with how much the grains still moved and overlapped.
+/// Like [`settle`], but also returns the remaining motion and overlap of the grains.
 ///
 /// # Errors
-/// As [`settle`].
+/// Same as [`settle`].
 pub fn deposit(pile: &NewPile, progress: impl FnMut(Settling) -> bool) -> Result<Settled> {
     pile.validate()?;
     match pile.deposition {
@@ -40,7 +39,7 @@ pub fn deposit(pile: &NewPile, progress: impl FnMut(Settling) -> bool) -> Result
     }
 }
 
-/// The grains where they are before they settle. Quick.
+/// The grains before they settle. Quick.
 pub fn start_of(pile: &NewPile) -> Vec<Grain> {
     match pile.deposition {
         Deposition::Rain => rain::lattice(pile),
@@ -57,34 +56,34 @@ fn random_radius(random: &mut Pcg64) -> f64 {
     0.5 * DIAMETER * random.random_range(1.0 - SPREAD..=1.0 + SPREAD)
 }
 
-/// A pile is at rest when it has been so slow for this long, s.
+/// A pile counts as at rest after it has been slow for this long, s.
 const REST_SECS: f64 = 0.02;
 
-/// How far a settling has come.
+/// Progress of a settling.
 #[derive(Clone, Copy, Debug)]
 pub struct Settling<'a> {
-    /// The pile as it is now.
+    /// The pile in its present state.
     pub simulation: &'a Simulation,
-    /// True where grains may still be falling through the medium of the rain.
+    /// True if grains may still be falling through the medium of the rain.
     pub rains: bool,
     /// Simulated time, s.
     pub time_secs: f64,
-    /// Simulated time after which it is given up, s.
+    /// Simulated time after which the settling fails, s.
     pub limit_secs: f64,
-    /// Fastest grain, in units of the speed that counts as rest.
+    /// Fastest grain, in units of the speed below which a pile is at rest.
     pub speed_over_rest: f64,
 }
 
-/// A pile at rest: its velocities are zero, and this is what they were.
+/// A pile at rest, with zero velocities. The other fields describe it just before the velocities were set to zero.
 #[derive(Clone, Debug)]
 pub struct Settled {
     /// The grains.
     pub grains: Vec<Grain>,
-    /// Mean kinetic energy of a grain when it was said to be at rest, in m g d.
+    /// Mean kinetic energy of a grain when the pile came to rest, in m g d.
     pub kinetic_energy: f64,
     /// Mean overlap of touching pairs, in d.
     pub mean_overlap: f64,
-    /// Largest overlap of all contacts, in d.
+    /// Largest overlap of any contact, in d.
     pub max_overlap: f64,
 }
 

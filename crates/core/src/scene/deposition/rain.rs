@@ -1,9 +1,9 @@
-//! Rain: the way to make a pile that the shipped state was made in.
+//! Rain: the method that made the initial state shipped with Slump.
 //!
-//! The discs start on a loose lattice above the base, jittered and at rest, and fall through a
-//! medium that slows them to a terminal speed of √(g·d)/2, so that they land without overlapping by
-//! more than terminal speed × Δt, whatever the height of the box. Once the pile has formed, the
-//! medium is taken away and the pile settles under the laws of the paper's runs without cohesion.
+//! The discs start at rest on a loose, jittered lattice above the base and fall through a medium. It limits them to a
+//! terminal speed of √(g·d)/2, so that they land with overlaps of at most terminal speed × Δt, whatever the height of
+//! the box. Once the pile has formed, the medium is removed and the pile settles under the laws of the paper's runs
+//! without cohesion.
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -20,8 +20,7 @@ use crate::world::Grain;
 
 /// Time step of the settling, s. The overlaps of the initial state scale with it.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// A pile whose grains have all been slower than this, in units of √(g·d), for [`REST_SECS`] is at
-/// rest.
+/// A pile is at rest if all its grains have been slower than this, in √(g·d), for [`REST_SECS`].
 const REST_SPEED: f64 = 2e-4;
 const STEPS_PER_LOOK: u32 = 100;
 
@@ -37,10 +36,10 @@ pub(super) fn settled(
     let rows = (rain.grains as f64 / columns as f64).ceil();
     let speed_unit = (GRAVITY * DIAMETER).sqrt();
     let terminal_speed = 0.5 * speed_unit;
-    // The upper rows fall the farthest; the pile they land on is lower than the lattice.
+    // The upper rows fall farthest; the pile they land on is lower than the lattice.
     let raining_secs = rows * SPACING * DIAMETER / terminal_speed + 0.1;
     let limit_secs = 4.0 * raining_secs + 2.0;
-    // Linear, where the exponential would differ in its last digits from one machine to another.
+    // Linear, because an exponential would differ between machines in its last digits.
     let drag_per_step = 1.0 - TIME_STEP_SECS * GRAVITY / terminal_speed;
     let mut slow_since_secs = f64::INFINITY;
     loop {
@@ -72,7 +71,7 @@ pub(super) fn settled(
     Ok(Settled::of(simulation))
 }
 
-/// Discs on a jittered lattice, row by row from below.
+/// Discs on a jittered lattice, row by row from the bottom.
 pub(super) fn lattice(rain: &NewPile) -> Vec<Grain> {
     let columns = rain.columns();
     let mut random = Pcg64::seed_from_u64(rain.seed);

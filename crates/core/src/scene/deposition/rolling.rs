@@ -1,17 +1,16 @@
-//! The way of one disc that is dropped: it falls, rolls over what it meets, and comes to lie where two
-//! others, or one and a wall, hold it (W. M. Visscher, M. Bolsterli, *Random packing of equal and
-//! unequal spheres in two and three dimensions*, 1972; W. S. Jodrey, E. M. Tory, *Simulation of random
-//! packing of spheres*, 1979).
+//! Path of one dropped disc: it falls, rolls over other discs, and comes to rest where two discs, or one disc and a
+//! wall, hold it (W. M. Visscher, M. Bolsterli, *Random packing of equal and unequal spheres in two and three
+//! dimensions*, 1972; W. S. Jodrey, E. M. Tory, *Simulation of random packing of spheres*, 1979).
 //!
-//! Nothing is stepped. A disc of radius r on one of radius r_i at c_i has its centre on the circle of
-//! radius R = r + r_i about c_i, at an angle φ from the vertical, and rolls to where the first of these
-//! happens: another disc k is met, φ = α − β with α the angle of c_k from c_i, D its distance and
+//! No time steps are taken. A disc of radius r rolling on one of radius r_i at c_i has its centre on the circle of
+//! radius R = r + r_i about c_i, at an angle φ from the vertical. It rolls until the first of these events. It meets
+//! another disc k: φ = α − β with α the angle of c_k from c_i, D its distance and
 //!
 //! > cos β = (R² + D² − (r + r_k)²) / (2 R D);
 //!
-//! the wall is met, sin φ = (distance of the centre's reach from c_i) / R; the floor is met; or φ = 90°,
-//! where it falls off. What is met holds the disc where it is on the other side of the disc's centre
-//! than i. Else the disc rolls on over what it has met.
+//! It meets the wall: sin φ = (distance of the centre's limit from c_i) / R. It meets the floor. Or φ = 90°, and it
+//! falls off. An obstacle holds the disc if it is on the other side of the disc's centre than i. Otherwise the disc
+//! rolls on over the obstacle.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -20,18 +19,18 @@ use glam::DVec2;
 use crate::number::Parts;
 use crate::world::Disc;
 
-/// Part of the reach that is rounding: by so much a disc may overlap one that it passes, or lie above where
-/// its fall began. None, and a disc between two that leave it just the room is handed from one to the other
-/// without end, and one that falls off where it touches the next falls through that; with it, each
-/// fall still ends lower, by a millionth of the reach at least.
+/// Fraction of the reach that counts as rounding: a disc may overlap a disc it passes, or land above the beginning of
+/// its fall, by this much. If it were 0, a disc between two others that leave it exactly enough room would be handed
+/// from one to the other without end, and a disc that falls off at the point where it touches the next one would fall
+/// through it. Each fall still ends lower, by at least a millionth of the reach.
 const GRAZING: f64 = 1e-12;
 
-/// What a disc can be dropped on: fixed discs, those that were dropped before, a floor, two walls. Discs are kept by
-/// columns, so that what a falling disc meets is found in constant time.
+/// The surface that discs are dropped on: fixed discs, discs dropped before, a floor and two walls. Discs are sorted
+/// into columns, so that the obstacles of a falling disc are found in constant time.
 #[derive(Clone, Debug)]
 pub struct Deposit {
     discs: Vec<Disc>,
-    /// The discs whose centres lie in each column, by height.
+    /// Indices of the discs whose centres lie in each column, by height.
     columns: Vec<Vec<u32>>,
     column_width: f64,
     largest_radius: f64,
@@ -55,7 +54,7 @@ impl Deposit {
         }
     }
 
-    /// Puts a disc in place. Those farther outside of the walls than a column's width are met by none.
+    /// Adds a disc. Discs farther outside the walls than a column's width are never met.
     pub fn add(&mut self, disc: Disc) {
         let index = self.discs.len() as u32;
         let column = self.column(disc.position.x);
@@ -66,13 +65,13 @@ impl Deposit {
         column.insert(column.len() - above, index);
     }
 
-    /// All that are in place, as they came.
+    /// All discs, in the order in which they were added.
     pub fn discs(&self) -> &[Disc] {
         &self.discs
     }
 
-    /// The highest place at x, not above `highest`, where a disc that falls comes to lie on one of those in place but for
-    /// `left`, the one that it falls from; and that one's index. Nothing where it falls to the floor.
+    /// The highest place at x, not above `highest`, where a falling disc lands on a disc other than `left`, the disc
+    /// that it falls from. Returns its height and the index of that disc, or `None` if it falls to the floor.
     fn landing(
         &self,
         x: f64,
@@ -102,8 +101,8 @@ impl Deposit {
         best
     }
 
-    /// Calls `visit` with the index of each disc that one of that radius may touch whose centre is within
-    /// the rectangle; of others as well.
+    /// Calls `visit` for each disc that a disc of this radius may touch if its centre is within the rectangle, and
+    /// for some others.
     fn each_near(&self, [min, max]: [DVec2; 2], radius: f64, mut visit: impl FnMut(usize, &Disc)) {
         let reach = radius + self.largest_radius;
         let middle = 0.5 * (min.x + max.x);
@@ -121,7 +120,7 @@ impl Deposit {
     }
 
     fn column(&self, x: f64) -> usize {
-        // A column more on either side holds the fixed discs that stand out beyond the walls.
+        // One extra column on either side for fixed discs that reach beyond the walls.
         let at = ((x + self.half_width) / self.column_width).floor() + 1.0;
         at.clamp(0.0, (self.columns.len() - 1) as f64) as usize
     }
@@ -131,10 +130,10 @@ impl Deposit {
     }
 }
 
-/// What holds a disc.
+/// A body that holds a disc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
-    /// The disc of that index on the deposit.
+    /// The disc with this index in the deposit.
     Disc(usize),
     /// The nearer wall.
     Wall,
@@ -142,20 +141,20 @@ pub enum Support {
     Floor,
 }
 
-/// Where a disc has come to lie.
+/// Position of rest of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     /// Its centre, m.
     pub centre: DVec2,
-    /// What it lies on, and what else it leans against, if that is needed.
+    /// The body that it lies on, and a second support if one is needed.
     pub supports: (Support, Option<Support>),
 }
 
-/// Angle by which a contact may lie behind a disc that rolls, from rounding alone, rad.
+/// Angle by which rounding may place a contact behind a rolling disc, rad.
 const ROUNDING: f64 = 1e-9;
 
-/// Where a disc of that radius comes to lie that is dropped at `x` from above all others. The radius is
-/// at most the surface's largest, and x leaves it between the walls.
+/// The position of rest of a disc of this radius dropped at `x` from above all others. The radius is at most the
+/// largest of the deposit, and x leaves the disc between the walls.
 pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     let mut fall = FallingDisc { from: DVec2::new(x, f64::INFINITY), left: None, side: 1.0 };
     loop {
@@ -167,7 +166,7 @@ pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
         let centre = DVec2::new(x, height);
         let aside = x - deposit.discs()[index].position.x;
         let side = if aside == 0.0 { fall.side } else { aside.signum() };
-        // Each fall ends lower than the one before, so there is a last one.
+        // Each fall ends lower than the one before, so the loop ends.
         match rolled(deposit, RollingDisc { radius, centre, on: index, side }) {
             RollEnd::Rests(rest) => return rest,
             RollEnd::FallsOff(next) => fall = next,
@@ -175,14 +174,14 @@ pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     }
 }
 
-/// A disc that falls from there, off the disc `left`, rolled to that side so far.
+/// A disc that falls from `from`, off the disc `left`, after rolling to `side`.
 struct FallingDisc {
     from: DVec2,
     left: Option<usize>,
     side: f64,
 }
 
-/// A disc that rolls on another to the side +1 (right) or −1.
+/// A disc that rolls on another, to the right (side +1) or to the left (−1).
 struct RollingDisc {
     radius: f64,
     centre: DVec2,
@@ -195,7 +194,7 @@ enum RollEnd {
     FallsOff(FallingDisc),
 }
 
-/// What a disc that rolls meets.
+/// Obstacle of a rolling disc.
 #[derive(Clone, Copy)]
 enum Obstacle {
     Disc(usize),
@@ -219,7 +218,7 @@ fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
             {
                 return held(Support::Disc(index));
             }
-            // It goes on sideways, and past each disc once.
+            // It continues to the same side, and passes each disc once.
             Obstacle::Disc(index) => roll = RollingDisc { radius, centre, on: index, side },
             Obstacle::Nothing => {
                 return RollEnd::FallsOff(FallingDisc { from: centre, left: Some(on), side });
@@ -262,10 +261,10 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
         let (distance, other_reach) = (there.length(), radius + other.radius);
         let cosine = (reach * reach + distance * distance - other_reach * other_reach)
             / (2.0 * reach * distance);
-        // What it would but graze it rolls past.
+        // It rolls past a disc that it would only graze.
         if cosine.abs() < 1.0 - GRAZING {
             let angle = libm::atan2(there.x, there.y) - libm::acos(cosine);
-            // The first time at or after now, but for rounding.
+            // The first angle at or after the present one, except for rounding.
             let ahead = (angle - now + ROUNDING).rem_euclid(TAU) - ROUNDING;
             meet(now + ahead, Obstacle::Disc(index));
         }
@@ -273,8 +272,8 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
     first.1
 }
 
-/// The centre of a disc that has rolled to what it meets. Square roots alone, where sines would differ in
-/// their last digits from one machine to another.
+/// The centre of a disc that has rolled to its obstacle. Uses only square roots, because sines would differ between
+/// machines in their last digits.
 fn place_at(deposit: &Deposit, roll: &RollingDisc, met: Obstacle) -> DVec2 {
     let &RollingDisc { radius, on, side, .. } = roll;
     let below = &deposit.discs()[on];

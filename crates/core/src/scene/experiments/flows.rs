@@ -1,4 +1,4 @@
-//! Grains that flow: out of a column, a silo, down an incline, in a drum and in a shaken box.
+//! Flowing grains: a collapsing column, a silo, an incline, a drum and a shaken box.
 
 use std::f64::consts::TAU;
 
@@ -12,23 +12,23 @@ use crate::world::{
     Boundary, Disc, Grain, GravityTurn, Motion, MotionCourse, TurnCourse, direction,
 };
 
-/// Grains that R₀ = H₀ = d takes.
+/// Number of grains of a column with R₀ = H₀ = d.
 const GRAINS_OF_SQUARE: f64 = 2.09;
-/// How far the gates go, m, and in which time, s: 15 m/s.
+/// Distance (m) and time (s) of the gates' motion: 15 m/s.
 const GATE_WAY: f64 = 3.0;
 const GATE_SECS: f64 = 0.2;
-/// How far the rough floor reaches, in the longest way that grains are known to go: beyond it is even.
+/// Half-width of the rough floor, relative to the longest known run-out. Beyond it the floor is smooth.
 const REACH: f64 = 1.3;
 
-/// R₀ of a column of so many grains, in diameters.
+/// R₀, in diameters, of a column with this number of grains.
 pub fn half_width(grains: usize, aspect: f64) -> f64 {
     (grains as f64 / (GRAINS_OF_SQUARE * aspect)).sqrt()
 }
 
-/// A column of grains between two gates over a rough floor. The gates are pulled away, faster than grains can follow,
+/// A column of grains between two gates over a rough floor. The gates are pulled away faster than grains can follow,
 /// and the column spreads to both sides.
 ///
-/// It is half as wide as R₀ on either side and H₀ high, so that with a = H₀/R₀ and a solid fraction of 0.82 it takes
+/// Its half-width is R₀ and its height H₀, so that with a = H₀/R₀ and a solid fraction of 0.82 it has
 /// 2 a R₀² · 0.82/(π/4) = 2.09 a R₀²/d² grains.
 pub fn collapse() -> Scene {
     let (grains, aspect) = (400, 2.0);
@@ -40,12 +40,12 @@ pub fn collapse() -> Scene {
     scene
 }
 
-/// The gates and the floor around a scene of grains, whose half width is R₀ in diameters; the gates go at
+/// Adds the gates and the floor to a scene of grains with half-width R₀ in diameters. The gates move at
 /// `release_secs`.
 pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     let top = |grain: &Grain| grain.position.y + grain.radius;
     let aspect = scene.grains.iter().map(top).fold(0.0, f64::max) / (half * DIAMETER);
-    // Beyond the longest run-out that columns are known for.
+    // Beyond the longest known run-out of columns.
     let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * libm::pow(aspect, 0.7)));
     scene.fixed_discs = rough_base(2.0 * reach, DIAMETER);
     let gate = |side: f64| half_space(DVec2::new(side * half, 0.0), DVec2::new(-side, 0.0));
@@ -59,17 +59,17 @@ pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     scene
 }
 
-/// Width of the silo and its height, in diameters.
+/// Width and height of the silo, in diameters.
 pub const SILO_WIDTH: f64 = 26.0;
 const SILO_HEIGHT: f64 = 60.0;
-/// How far below the bottom the floor lies that catches what flows out, in diameters.
+/// Depth of the catching floor below the bottom, in diameters.
 const FLOOR_DEPTH: f64 = 30.0;
-/// How far the plate falls, m, and in which time, s: faster than grains.
+/// Distance (m) and time (s) of the plate's fall: faster than grains.
 const PLATE_WAY: f64 = 1.0;
 const PLATE_SECS: f64 = 0.1;
 
-/// A silo with a flat bottom and an orifice in the middle of it. A plate closes it, falls away, and grains flow out onto
-/// a floor below.
+/// A silo with a flat bottom and an orifice in its middle. A plate closes the orifice, falls away, and grains flow
+/// out onto a floor below.
 pub fn silo() -> Scene {
     let mut scene = silo_of(of_loose_grains("silo", lattice(450, SILO_WIDTH, 0.7)), 7.0, 0.5);
     scene.duration_secs = 2.5;
@@ -78,7 +78,7 @@ pub fn silo() -> Scene {
     scene
 }
 
-/// The silo around a scene of grains, with an orifice of that width in diameters, which opens at `release_secs`.
+/// Adds the silo to a scene of grains, with an orifice of this width in diameters that opens at `release_secs`.
 pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
     let side = |sign: f64| Boundary::Polyline {
         points: vec![
@@ -100,15 +100,15 @@ pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
 /// Width of the box and height of its walls, in diameters.
 const INCLINE_WIDTH: f64 = 40.0;
 const INCLINE_HEIGHT: f64 = 30.0;
-/// How long grains come to rest before the box is tilted, s.
+/// Time for the grains to come to rest before the box is tilted, s.
 pub const LEVEL_SECS: f64 = 0.4;
-/// How fast the box is tilted, rad/s.
+/// Rate of tilting, rad/s.
 pub const TILT_RATE: f64 = 0.12;
-/// The steepest, rad.
+/// Largest tilt, rad.
 const STEEPEST: f64 = 0.72;
 
-/// A layer of grains in a flat box with a rough bottom that is tilted slowly: up to some angle it stays, then its surface
-/// flows. What is tilted is gravity, so that pictures are those of someone who sits in the box.
+/// A layer of grains in a flat box with a rough bottom that is tilted slowly. Up to some angle it stays at rest, then
+/// its surface flows. Gravity is tilted instead of the box, so pictures show the view of someone in the box.
 pub fn incline() -> Scene {
     let mut scene = of_loose_grains("incline", lattice(300, INCLINE_WIDTH, 1.2));
     let tilting_secs = STEEPEST / TILT_RATE;
@@ -127,13 +127,13 @@ pub fn incline() -> Scene {
 
 /// Inner radius of the drum, in diameters.
 const DRUM_RADIUS: f64 = 12.0;
-/// Sides of its wall, and discs on it: they are nearly a diameter apart.
+/// Number of sides of its wall, and of discs on it: they are nearly a diameter apart.
 const DRUM_SIDES: usize = 72;
-/// Ω, rad/s: Ω²R/g is 0.05, at which grains roll down a steady slope.
+/// Rate of rotation Ω, rad/s: Ω²R/g is 0.05, at which grains roll down a steady slope.
 const DRUM_RATE: f64 = 2.0;
 
-/// A drum that turns about its axis, two fifths full: its wall is rough by discs that turn with it, and every sixth of
-/// them is larger, so that one sees it turn.
+/// A drum that turns about its axis, two fifths full. Discs that turn with it make its wall rough; every sixth is
+/// larger, so that the rotation is visible.
 pub fn drum() -> Scene {
     let columns = |row: i32| {
         let y = SPACING * f64::from(row) - 0.78 * DRUM_RADIUS;
@@ -159,17 +159,17 @@ pub fn drum() -> Scene {
     scene
 }
 
-/// Half the width of the box, and its height, in diameters.
+/// Half-width and height of the box, in diameters.
 const HALF_WIDTH: f64 = 8.0;
 const BOX_HEIGHT: f64 = 30.0;
 /// Radius of the large grain, in diameters.
 const LARGE: f64 = 1.5;
-/// How often it is shaken, Hz.
+/// Frequency of shaking, Hz.
 const FREQUENCY_HZ: f64 = 10.0;
-/// Largest acceleration of the box, in g: above 1 all that lies in it is thrown up.
+/// Largest acceleration of the box, in g. Above 1 the grains are thrown up.
 const ACCELERATION: f64 = 3.0;
 
-/// 120 grains and a large one in a box.
+/// A shaken box with 120 grains and a large one.
 pub(crate) fn vibrated() -> Scene {
     let large = DVec2::new(0.0, 2.0 * SPACING + LARGE);
     let columns = |row: i32| {

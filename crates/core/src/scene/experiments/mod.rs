@@ -1,4 +1,4 @@
-//! Experiments of granular physics: grains among bodies that move.
+//! Experiments of granular physics: grains among moving bodies.
 
 mod flows;
 mod shear;
@@ -18,13 +18,13 @@ use super::tones::tone_in_layers;
 
 use crate::world::{Boundary, Grain, Motion, MotionCourse};
 
-/// The golden mean less 1: its multiples are spread evenly over an interval, however many there are.
+/// The golden mean minus 1. Its multiples are spread evenly over an interval, whatever their number.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Distance of grains on a lattice, in diameters.
+/// Spacing of grains on a lattice, in diameters.
 const SPACING: f64 = 1.22;
 
-/// A scene whose grains fall from where they are put, with diameters spread evenly over [0.8 d, 1.2 d]. Places are in
+/// A scene whose grains fall from given places, with diameters spread evenly over [0.8 d, 1.2 d]. Places are in
 /// diameters, more than 1.2 apart.
 fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     let grain = |(index, place): (usize, DVec2)| {
@@ -40,7 +40,8 @@ fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     scene
 }
 
-/// Places of so many grains, row by row from a height on, as many side by side as a width has room for, in diameters.
+/// Places of `grains` grains, in diameters: rows from the height `lowest` upwards, each with as many grains as fit
+/// into `width`.
 fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2> {
     let columns = (width / SPACING).floor().max(1.0) as usize;
     let first = -0.5 * SPACING * (columns - 1) as f64;
@@ -50,12 +51,12 @@ fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2
     })
 }
 
-/// A place in diameters, in m.
+/// Converts a place from diameters to m.
 fn place(x: f64, y: f64) -> DVec2 {
     DIAMETER * DVec2::new(x, y)
 }
 
-/// A box without a lid on y = 0, in diameters.
+/// A box without a lid, its bottom on y = 0, with sizes in diameters.
 fn open_box(half_width: f64, height: f64) -> Boundary {
     let corners =
         [(-half_width, height), (-half_width, 0.0), (half_width, 0.0), (half_width, height)];

@@ -1,4 +1,4 @@
-//! Grains under stress: sheared between plates and without walls, and compressed.
+//! Grains under stress: sheared between plates, sheared without walls, and compressed.
 
 use glam::DVec2;
 
@@ -7,34 +7,34 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
 use crate::world::{Disc, Drive, Motion, MotionCourse, Periodic};
 
-/// How many grains and how large the plates are.
+/// Number of grains and size of the plates.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearCell {
-    /// Width of the cell, in diameters, and so the number of discs of a plate.
+    /// Width of the cell in diameters, which is also the number of discs of a plate.
     pub wide: u8,
-    /// Columns of the grains at the start.
+    /// Columns of grains at the start.
     pub columns: u8,
-    /// Rows of them.
+    /// Rows of grains at the start.
     pub rows: u8,
 }
 
 const CELL: ShearCell = ShearCell { wide: 24, columns: 19, rows: 12 };
-/// Distance of rows at the start, in diameters.
+/// Spacing of rows at the start, in diameters.
 const ROW_SPACING: f64 = 1.22;
-/// From a plate to the nearest row, in diameters.
+/// Distance from a plate to the nearest row, in diameters.
 const PLATE_ROOM: f64 = 1.2;
-/// P, in m g/d: √(m/P) is 0.01 s.
+/// Pressure P, in m g/d: √(m/P) is 0.01 s.
 const SHEAR_PRESSURE: f64 = 10.0;
-/// Speed of the upper plate, m/s. Pressed together the grains are some 9 d high, and I is 0.07.
+/// Speed of the upper plate, m/s. The compressed grains are about 9 d high, and I is 0.07.
 const PLATE_SPEED: f64 = 0.6;
 
-/// Plane shear at constant pressure: grains between two rough plates in a periodic cell, of which the upper one is drawn
-/// along at a given speed and pressed down by a given pressure (F. da Cruz and others, *Rheophysics of dense granular
+/// Plane shear at constant pressure: grains between two rough plates in a periodic cell. The upper plate moves at a
+/// given speed and is pressed down by a given pressure (F. da Cruz and others, *Rheophysics of dense granular
 /// materials*, Phys. Rev. E 72, 2005).
 ///
-/// What the plates do to the grains hangs on I = γ̇ √(m/P) alone, with γ̇ the shear rate, m the mass of a grain of
-/// diameter d and P the pressure, a force a length in a plane: the friction T/N of the plate grows with I, the solid
-/// fraction shrinks. Grains do not feel gravity, which says how strong a Bond number is.
+/// The effect of the plates depends only on I = γ̇ √(m/P), with γ̇ the shear rate, m the mass of a grain of diameter
+/// d and P the pressure, a force per length in a plane. The friction T/N of the plate increases with I, and the solid
+/// fraction decreases. Grains do not feel gravity; it only sets the scale of the Bond number.
 pub fn shear() -> Scene {
     let mut scene = shear_of(CELL, SHEAR_PRESSURE, PLATE_SPEED);
     scene.parameters.time_step_secs = 2e-4;
@@ -42,7 +42,7 @@ pub fn shear() -> Scene {
     scene
 }
 
-/// Grains between two plates, the upper one under a pressure in m g/d and with a speed in m/s.
+/// Grains between two plates, the upper plate with a pressure in m g/d and a speed in m/s.
 pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     let ShearCell { wide, columns, rows } = cell;
     let spacing = [f64::from(wide) / f64::from(columns), ROW_SPACING];
@@ -79,23 +79,25 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     scene
 }
 
-/// Columns and rows of grains at the start; rows in even number, since every other is half a place on.
+/// Columns and rows of grains at the start. The number of rows is even, because every other row is shifted by half a
+/// spacing.
 const COLUMNS: u32 = 16;
 const ROWS: u32 = 14;
-/// Distance of neighbours at the start, in diameters: that of the largest two and a bit. Grains cover 0.74 of the cell.
+/// Distance of neighbours at the start, in diameters: slightly more than the largest diameter. Grains cover 0.74 of
+/// the cell.
 const PERIODIC_SPACING: f64 = 1.11;
-/// How far diameters go from the mean, as a part of it.
+/// Largest deviation of a diameter from the mean, relative to the mean.
 const SPREAD: f64 = 0.1;
-/// γ̇, 1/s.
+/// Shear rate γ̇, 1/s.
 const SHEAR_RATE: f64 = 10.0;
 
-/// Shear without walls: a cell whose borders are one and the same line each, and whose upper border slides along the
-/// lower one (`world::periodic`).
+/// Shear without walls, in a cell with periodic borders whose upper border slides along the lower one
+/// (`world::periodic`).
 ///
-/// Nothing but the shear rate γ̇ has a time in it, as long as grains are rigid and do not cohere. So the same grains at
-/// another rate take the same way in other times, and stresses grow with γ̇² (R. A. Bagnold, *Experiments on a
+/// Only the shear rate γ̇ sets a time scale, as long as grains are rigid and do not cohere. So at another rate the
+/// same grains take the same paths in other times, and stresses grow with γ̇² (R. A. Bagnold, *Experiments on a
 /// gravity-free dispersion of large solid spheres in a Newtonian fluid under shear*, Proc. R. Soc. A 225, 1954).
-/// Grains do not feel gravity, which says how strong a Bond number is.
+/// Grains do not feel gravity; it only sets the scale of the Bond number.
 pub fn shear_periodic() -> Scene {
     let row_height = PERIODIC_SPACING * 0.75f64.sqrt();
     let place = |k: u32| {
@@ -127,32 +129,32 @@ pub fn shear_periodic() -> Scene {
 }
 
 const GRAINS: usize = 300;
-/// Width of the box that they lie in at the start, in diameters.
+/// Width of the box at the start, in diameters.
 const WIDTH: f64 = 19.0;
-/// From the lattice to the walls, in diameters.
+/// Distance from the lattice to the walls, in diameters.
 const ROOM: f64 = 0.75;
-/// Confining pressure, in m g/d, where the walls are as high as they are in the middle of the test.
+/// Confining pressure, in m g/d, when the walls have the height of the middle of the test.
 const CONFINING_PRESSURE: f64 = 10.0;
 /// Height of the grains in the middle of the test, in diameters.
 const HEIGHT: f64 = 18.0;
-/// How far the lid comes down while the sides press the grains together, in diameters, and in which time, s.
+/// Distance (diameters) and time (s) by which the lid moves down while the sides compress the grains.
 const CLOSING: f64 = 5.5;
 const CLOSING_SECS: f64 = 0.35;
-/// How far it goes down then, in diameters, and in which time, s: γ̇ √(m/P) is 1.4e-3.
+/// Distance (diameters) and time (s) of the lid's further motion: γ̇ √(m/P) is 1.4e-3.
 const COMPRESSION: f64 = 5.0;
 const COMPRESSION_SECS: f64 = 2.0;
 
-/// A biaxial test: a box of grains whose side walls are pressed inward by a constant force each and whose lid goes
+/// A biaxial test: a box of grains whose side walls are pressed inward by a constant force each and whose lid moves
 /// down at a given speed. Grains do not feel gravity.
 ///
-/// First the lid comes down fast onto grains that lie loosely, while the sides press them together; then it goes on
-/// slowly. What they bear is told by their stress ratio σ_yy/σ_xx, which the table `measures` of a recording has: grains
-/// that flow bear (1 + sin φ_f)/(1 − sin φ_f), φ_f their friction angle (Mohr, Coulomb). The height changes, so that it is
-/// the force of a wall that is constant, and its pressure but for some ten per cent.
+/// First the lid moves down fast onto loose grains while the sides compress them; then it moves slowly. The strength
+/// of the grains is their stress ratio σ_yy/σ_xx, in the table `measures` of a recording. Flowing grains reach
+/// (1 + sin φ_f)/(1 − sin φ_f), with φ_f their friction angle (Mohr, Coulomb). Each wall's force is constant, so its
+/// pressure varies with the height, by about ten per cent.
 pub fn biaxial() -> Scene {
     let mut scene = of_loose_grains("biaxial", lattice(GRAINS, WIDTH, ROOM));
     scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
-    // As many side by side as the lattice has.
+    // As many columns as the lattice has.
     let columns = (WIDTH / SPACING).floor();
     let rows = (GRAINS as f64 / columns).ceil();
     let half = 0.5 * SPACING * (columns - 1.0) + ROOM;

@@ -8,14 +8,14 @@ use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, view};
 use crate::scene::Scene;
 use crate::world::Boundary;
 
-/// Discs in a column.
+/// Discs per column.
 const HIGH: u8 = 6;
-/// Distance of columns at the end, in diameters.
+/// Final spacing of columns, in diameters.
 const NARROWEST: f64 = 0.6;
-/// Speed of each wall, m/s: the highest disc rises at half of √(g d) at most.
+/// Speed of each wall, m/s. The highest disc rises at half of √(g d) at most.
 const SPEED: f64 = 0.007;
 
-/// Where the discs have to be when the columns are `spacing` diameters apart, in diameters.
+/// Correct places of the discs, in diameters, when the columns are `spacing` diameters apart.
 fn places(spacing: f64) -> Vec<DVec2> {
     let height = (1.0 - spacing * spacing).sqrt();
     let column = |x: f64, lift: f64| {
@@ -26,17 +26,17 @@ fn places(spacing: f64) -> Vec<DVec2> {
 
 /// A packing between two walls that move in, without friction and open above.
 ///
-/// Three columns of discs stand side by side, the one in the middle higher by h; with d = 1, columns s
-/// apart touch where s² + h² = 1. At the start h = 1/2, and a disc inside touches six others: more
-/// contacts than freedoms. As the walls push the columns together, h grows and the discs of a column
-/// part. Each disc then rests on two things below it, discs, a wall or the floor, which share its weight
-/// and all above it: every contact pushes, and there are as many as freedoms. So no disc can sink, and
-/// pushed slowly each has one place to be, the k-th of a column at
+/// Three columns of discs stand side by side, the middle one higher by h. With d = 1, columns at distance s touch if
+/// s² + h² = 1. At the start h = 1/2, and an inner disc touches six others: there are more contacts than degrees of
+/// freedom. As the walls push the columns together, h grows and the discs of a column separate. Each disc then rests
+/// on two bodies below it (discs, a wall or the floor), which share its weight and the load above it. Every contact
+/// pushes, and there are as many contacts as degrees of freedom. So no disc can sink, and if the walls move slowly
+/// the places are unique: the k-th disc of a column is at
 ///
-/// > x = −s, 0 or s,  y = 1/2 + 2kh, in the middle h more,
+/// > x = −s, 0 or s,  y = 1/2 + 2kh, and h higher in the middle column,
 ///
-/// as long as s > 1/2, where the outer columns meet and nothing can give way any more. With more columns
-/// a disc on the floor would have none but those that stand on it beside it, and they push it away.
+/// as long as s > 1/2. At s = 1/2 the outer columns meet and nothing can give way any more. With more columns, a disc
+/// on the floor would only touch the discs that lean on it from both sides, and they push it away.
 pub fn press() -> Scene {
     let widest = 0.75f64.sqrt();
     let grains = places(widest).into_iter().map(|place| place * (1.0 - TOUCH));
@@ -53,12 +53,12 @@ pub fn press() -> Scene {
     scene
 }
 
-/// Where the discs have to be in the end, m, in the order of the scene's.
+/// Correct final places of the discs, m, in the order of the scene.
 pub fn pressed_places() -> Vec<DVec2> {
     places(NARROWEST).into_iter().map(|place| DIAMETER * place).collect()
 }
 
-/// When the walls have come to their ends, s.
+/// Time at which the walls reach their final places, s.
 pub fn pressing_secs() -> f64 {
     DIAMETER * (0.75f64.sqrt() - NARROWEST) / SPEED
 }
@@ -68,9 +68,8 @@ const SIDE: i32 = 5;
 /// Speed of each disc at the start, in √(g d).
 const SQUEEZED_SPEED: f64 = 0.3;
 
-/// 5 × 5 discs in a box that is shorter than they are by the share `strain`, along each side.
-/// A lattice of discs in a box that is too small for it: more contacts than the discs have freedoms,
-/// and restitution that each of them asks for.
+/// A lattice of 5 × 5 discs in a box that is too small for it: each side is shorter than the lattice by the fraction
+/// `strain`. There are more contacts than degrees of freedom, and each contact demands restitution.
 pub fn squeeze(strain: f64) -> Scene {
     let mut random = Pcg64::seed_from_u64(1);
     let speed = SQUEEZED_SPEED * (GRAVITY * DIAMETER).sqrt();

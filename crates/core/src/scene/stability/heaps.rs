@@ -1,4 +1,4 @@
-//! Heaps, an arch and a full box, which stand by the way in which their discs lie.
+//! Heaps, an arch and a full box, whose geometry keeps them at rest.
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_8, SQRT_2};
 
@@ -10,13 +10,12 @@ use super::{DIAMETER, TOUCH, disc, dry, floor, half_space, view};
 use crate::scene::{Scene, rough_base};
 use crate::world::{Disc, direction};
 
-/// Where the falling disc starts, from the place of the highest, in diameters.
+/// Start of the falling disc relative to the highest disc, in diameters.
 const FALLING: [f64; 2] = [0.3, 1.5];
 
-/// A heap of `rows` rows, the lowest of `rows` discs.
-/// A heap with slopes of 60° over a rough base: each disc lies in the notch of two below it, and
-/// what presses on an edge disc from above passes straight on to the one below, so the heap stands
-/// even without friction.
+/// A heap of `rows` rows over a rough base, the lowest row with `rows` discs, with slopes of 60°. Each disc lies in
+/// the notch between two below it, and the load on an edge disc passes straight on to the one below. So the heap
+/// stays at rest even without friction.
 pub fn heap(rows: usize) -> Scene {
     let height = 0.75f64.sqrt() * (1.0 - 3.0 * TOUCH);
     let mut grains = Vec::new();
@@ -40,13 +39,14 @@ pub fn heap(rows: usize) -> Scene {
     scene
 }
 
-/// The largest heap of at most `count` discs, for `count` ≥ 1.
+/// The largest heap with at most `count` ≥ 1 discs.
 pub fn heap_of(count: usize) -> Scene {
     let rows = (1..).take_while(|rows| rows * (rows + 1) / 2 <= count).count();
     Scene { name: "size".into(), ..heap(rows) }
 }
 
-/// The same heap with one disc more that falls on its slope, `distance` diameters from the origin along both axes.
+/// The same heap, with one more disc that falls on its slope, moved by `distance` diameters from the origin along
+/// both axes.
 pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "far".into();
@@ -61,26 +61,26 @@ pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
     scene
 }
 
-/// The steepest slope on which the heap stands, degrees.
+/// The steepest slope on which the heap stays at rest, degrees.
 pub const STEEPEST_DEGREES: f64 = 30.0;
 
-/// The heap of [`heap`] on a slope. It stands up to an inclination of exactly 30°, whatever its size and
-/// for every friction below √3.
+/// The heap of [`heap`] on a slope. It stays at rest up to an inclination of exactly 30°, whatever its size and for
+/// every friction below √3.
 ///
-/// Up to 30° every disc can rest on the two below it without friction. Their forces f₁ (up the slope of
-/// it) and f₂ (down the slope) run along the lattice, at 60° to the base. With θ the inclination and w a
-/// disc's weight, they ask for (f₁ + f₂) sin 60° = w cos θ and (f₂ − f₁) cos 60° = w sin θ, so that
+/// Up to 30° every disc can rest on the two below it without friction. The forces of these, f₁ (the disc up the
+/// slope) and f₂ (the disc down the slope), act along the lattice, at 60° to the base. With θ the inclination and w a
+/// disc's weight, balance requires (f₁ + f₂) sin 60° = w cos θ and (f₂ − f₁) cos 60° = w sin θ, so that
 ///
-/// > f₁ = w (cos θ/√3 − sin θ) ≥ 0  where tan θ ≤ 1/√3;
+/// > f₁ = w (cos θ/√3 − sin θ) ≥ 0  if tan θ ≤ 1/√3.
 ///
-/// what a disc gets from above passes straight on to the one below, and the sums along each line of
-/// the lattice push as well.
+/// The load on a disc passes straight on to the discs below, and the sums along each line of the lattice push as
+/// well.
 ///
-/// Beyond 30° the weight of the highest disc passes below its lower contact, about which it turns: its
-/// upper contact opens at 30° to that contact's normal, which only friction of at least tan 60° = √3
-/// could hold. Without friction the whole base would have to pull, Σf₁ < 0, so that nothing holds.
+/// Beyond 30° the weight of the highest disc passes below its lower contact, about which the disc turns: its upper
+/// contact opens at 30° to that contact's normal, and only a friction of at least tan 60° = √3 could hold it. Without
+/// friction the whole base would have to pull, Σf₁ < 0, so that nothing holds.
 ///
-/// A heap of grains poured at random has no such value: its angle of repose is a matter of its past.
+/// A heap of grains poured at random has no such value: its angle of repose depends on its history.
 pub fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "repose-angle".into();
@@ -96,38 +96,36 @@ pub fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
     scene
 }
 
-/// The least friction that holds the arch.
+/// The smallest friction that holds the arch.
 pub const FRICTION_OF_ARCH: f64 = 3.0 - 2.0 * SQRT_2;
 
-/// Depth of the ground that a fallen arch lies on, below the fixed discs' centres, in diameters.
+/// Depth of the ground below the fixed discs' centres, in diameters. A fallen arch lies on it.
 const GROUND: f64 = 0.5;
 
 /// Three discs as a semicircular arch between two fixed ones: the centres of all five lie on half a
 /// circle, an eighth of a turn apart.
 ///
-/// A contact whose normal, from the lower disc to the higher, rises at the angle φ carries N along it
-/// and T across it, so the force up the arch is H = N cos φ − T sin φ, V = N sin φ + T cos φ. With w the
-/// weight of a disc, half the keystone hangs on each crown contact (V = w/2, φ = β), and the spring
-/// contact below carries a disc more (V = 3w/2, φ = α) at the same thrust H, so that
+/// A contact whose normal, from the lower disc to the higher, rises at the angle φ carries N along the normal and T
+/// across it. So the force up the arch is H = N cos φ − T sin φ, V = N sin φ + T cos φ. With w the weight of a disc,
+/// each crown contact carries half the keystone (V = w/2, φ = β), and the spring contact below carries one disc more
+/// (V = 3w/2, φ = α) at the same thrust H, so that
 ///
 /// > T_β = (w/2) cos β − H sin β,  T_α = (3w/2) cos α − H sin α.
 ///
-/// No torque on the disc between them asks for T_α = −T_β, which gives
+/// Zero torque on the disc between the two contacts requires T_α = −T_β, which gives
 ///
 /// > H = (w/2) (cos β + 3 cos α)/(sin α + sin β),
 /// > T_β = (w/2) (sin α cos β − 3 cos α sin β)/(sin α + sin β).
 ///
-/// T vanishes where tan α = 3 tan β, on the funicular. On the semicircle β = 22.5° and α = 67.5°; with
+/// T vanishes if tan α = 3 tan β, on the funicular. On the semicircle β = 22.5° and α = 67.5°; with
 /// c = cos β = sin α and s = sin β = cos α, 4cs = √2 and c² − 3s² = √2 − 1, the crown contacts have
 ///
 /// > T/N = (c² − 3s²)/(1 + 4cs) = (√2 − 1)/(√2 + 1) = 3 − 2√2.
 ///
-/// The spring contacts need (√2 − 1)/(3 + √2), about half of it. Below μ = 3 − 2√2 the keystone slips
-/// through.
+/// The spring contacts need (√2 − 1)/(3 + √2), about half as much. Below μ = 3 − 2√2 the keystone slips through.
 ///
-/// The balance is one of discs that can roll, and so unstable at any friction: left alone, rounding and
-/// what the solver leaves grow until the arch rolls aside, after about 0.7 s. What is measured is over
-/// long before.
+/// This balance is unstable at any friction, because discs can roll. Rounding and solver errors grow until the arch
+/// rolls aside, after about 0.7 s. The measurement ends long before.
 pub fn arch() -> Scene {
     let radius = 0.5 * (1.0 - TOUCH) / libm::sin(FRAC_PI_8);
     let place = |eighth: u8| radius * direction(f64::from(eighth) * FRAC_PI_4);
@@ -140,23 +138,22 @@ pub fn arch() -> Scene {
     scene
 }
 
-/// Overlap of neighbours in the regular lattice, in displacements: what two of them can open, and half of
-/// that again.
+/// Overlap of neighbours in the regular lattice, in units of the displacement: two neighbours can open by two units,
+/// and half as much is added.
 const SPARE: f64 = 3.0;
 
-/// Rows of `columns` discs and of one less in turn, each disc displaced by up to `perturbation` diameters
-/// along each axis.
+/// A box full of discs in a triangular lattice, each displaced by up to `perturbation` diameters along each axis. The
+/// rows have `columns` discs and one disc less in turn.
 ///
-/// A box full of discs in a lattice of triangles: a disc inside touches six others, so that there are three
-/// contacts for each disc where its freedoms ask for one and a half. Each disc is off its place by a
-/// little, which turns every normal by as much.
+/// An inner disc touches six others, so there are three contacts per disc, while the degrees of freedom of a disc
+/// require one and a half. The displacements turn every normal by a small angle.
 ///
-/// It is at rest. In the regular lattice the contacts side by side may bear nothing: what is above a disc rests
-/// on two contacts below it, or on one and a wall, and all of these push, inside their cones. They have four
-/// impulses a disc for its three balances, so that a small turn of the normals asks for a small change of the
-/// impulses, and not for motion.
+/// The lattice is at rest. In the regular lattice the horizontal contacts may carry no force: the load on a disc
+/// rests on two contacts below it, or on one contact and a wall, and all of these push, inside their friction cones.
+/// They have four impulses per disc for three balance equations, so a small rotation of the normals needs only a
+/// small change of the impulses and no motion.
 ///
-/// The overlap of neighbours is three times the displacement, so that none opens.
+/// The overlap of neighbours is three times the displacement, so that no contact opens.
 pub fn lattice(columns: usize, rows: usize, perturbation: f64) -> Scene {
     let mut random = Pcg64::seed_from_u64(5);
     let mut displaced = || DVec2::from_array([0; 2].map(|_| random.random_range(-1.0..=1.0)));

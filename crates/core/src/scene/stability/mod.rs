@@ -1,5 +1,5 @@
-//! Scenes made to break methods: each drives one known weakness and has a right answer. What is
-//! measured on them is in `study::stability`.
+//! Scenes made to break solvers. Each drives one known weakness and has a known correct answer.
+//! `slump_studies::stability` measures them.
 
 mod boxes;
 mod columns;
@@ -20,14 +20,14 @@ pub use impacts::{WALL_DISTANCE, balls, blow, bounce, dilatancy, thin_wall};
 use super::{Scene, View};
 use crate::world::{Boundary, Grain, Gravity, Parameters};
 
-/// d of all these scenes, m.
+/// Diameter d of all these scenes, m.
 pub const DIAMETER: f64 = 0.01;
-/// g, m/s².
+/// Gravity g, m/s².
 pub const GRAVITY: f64 = 9.8;
-/// Overlap of discs that touch at the start, in diameters: more than a well solved step opens them
-/// by, and far less than any measure.
+/// Overlap of discs that touch at the start, in diameters: more than a well solved step opens them, and far less than
+/// any measured length.
 const TOUCH: f64 = 1e-6;
-/// Grains under gravity, without cohesion and restitution.
+/// A scene of grains under gravity, without cohesion and restitution.
 pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     let gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) };
     let parameters = Parameters { friction: 0.5, ..Parameters::default() };
@@ -36,12 +36,12 @@ pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// The same on the ground.
+/// Like [`dry`], with the ground.
 fn on_floor(name: &str, grains: Vec<Grain>) -> Scene {
     Scene { boundaries: vec![floor()], ..dry(name, grains) }
 }
 
-/// A view of so much, in diameters.
+/// A view with corners in diameters.
 pub(super) fn view(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: DIAMETER * min, max: DIAMETER * max })
 }

@@ -1,29 +1,27 @@
-//! The remedy `speculative`: pairs that would meet within a step are in its problem too.
+//! The remedy `speculative`: pairs that would meet within a step also enter its problem.
 
 use crate::contact::{InTouch, LookAhead};
 use crate::sim::state::State;
 
-/// Farther pairs are left alone, in d: where all grains are fast, the search would be of nearly all pairs.
+/// Largest search distance, in d. Without it the search would cover nearly all pairs if all grains are fast.
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
-/// How far a step that has begun has to look: as far as two bodies of the fastest speed come.
+/// Search distance for a step that has begun: the largest approach of two bodies at the highest speed.
 ///
-/// A contact that is looked for at the beginning of a step is missed where the pair meets later in it,
-/// and a fast disc is then inside a wall, or through it. So pairs with a gap that would close within
-/// the step enter its problem too, and may close by that gap and no more (E. Catto, *Continuous
-/// collision*, 2013):
+/// Contacts are found at the beginning of a step, so a pair that meets later in the step is missed. A fast disc may
+/// then end up inside a wall, or behind it. So pairs whose gap would close within the step also enter its problem,
+/// and may close by their gap and no more (E. Catto, *Continuous collision*, 2013):
 ///
 /// > 0 ≤ P ⟂ v_n + gap/Δt ≥ 0.
 ///
-/// They do not pull. At the end of the step they touch: the gap is taken larger by the rounding that
-/// contacts have (`contact::range`). In the compressive cone they rub by what exceeds the cohesion that
-/// they will have.
+/// They do not pull. At the end of the step they touch, because the gap is increased by the rounding tolerance of
+/// contacts (`contact::range`). In the compressive cone their friction is bounded by the normal force above their
+/// later cohesion.
 ///
-/// **What it costs.** The pair is slowed down to gap/Δt before it meets, and bounces in the step after
-/// with ρ times that: with any share between 0 and 1 of the speed that it should have, half of it in
-/// the mean. The normal is that of the beginning, so what would pass by at a slant may be held up by
-/// nothing. And a fast grain looks for all that lies within its way. Cutting the step into pieces
-/// (`remedies::pieces`) has none of these faults.
+/// **Drawbacks.** The pair is slowed down to gap/Δt before it meets, and in the next step it bounces with ρ times
+/// that speed: with any fraction between 0 and 1 of the correct speed, on average half of it. The normal is that of
+/// the beginning of the step, so a pair that would pass by at an angle may be stopped without contact. And a fast
+/// grain searches its whole path. Dividing the step into pieces (`remedies::pieces`) has none of these drawbacks.
 pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let by_forces = 2.0 * state.largest_acceleration() * time_step_secs * time_step_secs;

@@ -14,7 +14,7 @@ use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{Model, SolveReport};
 
-/// Solves the problem that is set up.
+/// Solves the prepared problem.
 pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> SolveReport {
     if settings.remedies.sequential_impacts {
         sequential_impacts::solve(stage, settings)

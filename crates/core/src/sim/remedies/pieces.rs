@@ -1,12 +1,12 @@
-//! The remedy `max-travel`: a step is cut into pieces in which no grain moves far.
+//! The remedy `max-travel`: a step is divided into pieces in which no grain moves far.
 
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 
-/// Most pieces of a step: more would be a step of another order than the one asked for.
+/// Limit for the pieces of a step. With more, the step would no longer be comparable to the one asked for.
 const MOST_PIECES: f64 = 100.0;
 
-/// Pieces of the next step: 1 unless grains are too fast for it.
+/// Number of pieces of the next step: 1 unless grains are too fast.
 pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
     let world = &state.world;
     let longest = settings.remedies.max_travel * world.mean_diameter;

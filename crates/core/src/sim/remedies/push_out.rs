@@ -6,37 +6,37 @@ use crate::contact::Numbering;
 use crate::number::Parts;
 use crate::sim::state::State;
 
-/// Overlap that is left, in d: cohesive contacts live on overlap. Smaller: contacts are lost to
-/// rounding; larger: it shows in what is measured.
+/// Remaining overlap, in d: cohesive contacts need overlap. If smaller, rounding breaks contacts; if larger, it is
+/// visible in the measurements.
 const LEFT: f64 = 2e-4;
-/// Part of the rest that one step takes away. Larger: piles visibly jump; smaller: it takes longer.
+/// Fraction of the excess overlap removed per step. If larger, piles visibly jump; if smaller, it takes longer.
 const SHARE: f64 = 0.2;
-/// Sweeps. What they leave, the next step takes up.
+/// Number of sweeps. The next step corrects their remaining error.
 const SWEEPS: u32 = 8;
 
-/// A contact to be pushed.
+/// A contact in the position correction.
 struct PushedContact {
     i: usize,
     j: Option<usize>,
     normal: DVec2,
-    /// By how much its gap has to grow, m; negative is what it may shrink.
+    /// Required increase of the gap, m. A negative value is the allowed decrease.
     want: f64,
-    /// λ, kg·m.
+    /// Push λ, kg·m.
     push: f64,
-    /// 1/w, kg.
+    /// Effective mass 1/w, kg.
     mass: f64,
 }
 
-/// Moves the grains after a step of that length, whose contacts are still those of its beginning.
+/// Moves the grains after a step of length `time_step_secs`, whose contacts are still those of its beginning.
 ///
-/// After a step the grains are moved by δ so that each contact's gap grows by a part of what it
-/// overlaps too much, and no contact is pushed into overlap by its neighbours. With w = 1/m_i + 1/m_j
-/// and λ the push of a contact, δ_i = Σ n λ/m_i,
+/// After a step the grains are moved by δ so that each contact's gap grows by a fraction of its excess overlap, and
+/// no contact is pushed into overlap by its neighbours. With w = 1/m_i + 1/m_j and λ the push of a contact,
+/// δ_i = Σ n λ/m_i,
 ///
 /// > 0 ≤ λ ⟂ n·(δ_i − δ_j) − want ≥ 0,
 ///
-/// which is Signorini's law again, solved by a few sweeps of projected Gauss–Seidel. Velocities stay
-/// as they are, so no kinetic energy is gained; a grain that is lifted gains the height.
+/// which is again Signorini's law, solved by a few sweeps of projected Gauss–Seidel. Velocities do not change, so no
+/// kinetic energy is gained; a lifted grain gains potential energy.
 pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
     let State { world, contacts, walls, .. } = state;
     let left = LEFT * world.mean_diameter;

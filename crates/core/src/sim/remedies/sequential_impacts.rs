@@ -1,44 +1,42 @@
-//! Shocks that run through touching grains one after the other, in one step.
+//! Shocks that travel through touching grains one after the other, within one step.
 //!
-//! **What is wrong.** The term ρ v_n^{n−1} of the paper's law settles all shocks of a step at once, and
-//! knows what a contact does before the step alone. A ball that hits a row of balls at rest sends all
-//! of them off together, whatever ρ is: contacts within the row do not close beforehand, so they may
-//! not open afterwards either. In truth the shock travels, and the last ball alone flies off.
+//! **Problem.** The term ρ v_n^{n−1} of the paper's law settles all shocks of a step at once, and depends only on a
+//! contact's velocity before the step. A ball that hits a row of balls at rest sends all of them off together,
+//! whatever ρ is: contacts within the row do not close before the step, so they may not open after it. In reality the
+//! shock travels, and only the last ball flies off.
 //!
-//! **The remedy.** The shocks are followed first, without gravity, which does nothing in no time, and
-//! without friction. A pass takes the contacts that close, and those alone, and solves
+//! **Remedy.** First the shocks are computed, without friction and without gravity, which has no effect in zero time.
+//! A pass takes only the contacts that close, and solves
 //!
 //! > 0 ≤ P_k ⟂ u_k⁺ + ρ u_k⁻ ≥ 0 for each k with u_k⁻ < 0,  u⁺ = u⁻ + W P.
 //!
-//! That makes other contacts close, which are the next pass, until none is left. With ρ = 1 these are
-//! the generalized reflections of B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf and E. Grinspun,
-//! *Reflections on simultaneous impact* (2012); where the contacts of a pass share no grain, they are
-//! binary impacts in sequence (A. Chatterjee and A. Ruina, 1998). Contacts that close together are
-//! solved together, so that the outcome is as symmetric as its start and does not depend on how grains
-//! are numbered, as it would if one of them had to come first.
+//! This makes other contacts close, which form the next pass, until no contact closes. With ρ = 1 these are the
+//! generalized reflections of B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf and E. Grinspun, *Reflections on
+//! simultaneous impact* (2012). If the contacts of a pass share no grain, they are binary impacts in sequence (A.
+//! Chatterjee and A. Ruina, 1998). Contacts that close together are solved together, so that the result is as
+//! symmetric as the initial state and does not depend on the numbering of grains, as it would if one contact had to
+//! come first.
 //!
-//! **No energy is gained.** Where P_k > 0, u_k⁺ = −ρ u_k⁻, so (WP)_k = u_k⁺ − u_k⁻ = (1+ρ)|u_k⁻| > 0. A
-//! pass changes the kinetic energy by
+//! **No energy is gained.** If P_k > 0, u_k⁺ = −ρ u_k⁻, so (WP)_k = u_k⁺ − u_k⁻ = (1+ρ)|u_k⁻| > 0. A pass changes the
+//! kinetic energy by
 //!
 //! > ½P·(u⁺ + u⁻) = −½ (1−ρ) Σ P_k |u_k⁻| = −½ (1−ρ)/(1+ρ) Σ P_k (WP)_k ≤ 0.
 //!
-//! Contacts that still close after the last pass, slower than anything that is to bounce, are stopped
-//! by the projection of the velocities on those that close no contact. That takes energy too. Impulses
-//! act on pairs, so momentum stays.
+//! Contacts that still close after the last pass, at speeds too slow to bounce, are stopped by projecting the
+//! velocities onto those that close no contact. This also dissipates energy. Impulses act on pairs, so momentum is
+//! conserved.
 //!
-//! **The step itself** then asks each contact that was struck to open with the speed û_k ≥ 0 that the
-//! shocks have left it: u_k^n − û_k takes the place of u_k^n + ρ u_k^{n−1} in its law. Without gravity
-//! and friction the impulses of the shocks solve that step as they are: they are ≥ 0, and where
-//! they are not 0, u_k^n = û_k. With friction it rubs by the whole normal impulse, shocks included.
-//! A single contact has û = −ρ u^{n−1}: nothing changes for it.
+//! **The step itself** then requires each contact that was struck to open with the speed û_k ≥ 0 given by the shocks:
+//! u_k^n − û_k replaces u_k^n + ρ u_k^{n−1} in its law. Without gravity and friction the impulses of the shocks
+//! already solve this step: they are ≥ 0, and if they are not 0, u_k^n = û_k. With friction, the bound depends on the
+//! whole normal impulse, including shocks. A single contact has û = −ρ u^{n−1}, so nothing changes for it.
 //!
-//! **Friction.** With it bounces may gain energy, here as in the paper's scheme (T. R. Kane, 1984).
-//! Where the contacts of a step have done positive work, beside that of walls that move, its û_k are
-//! halved and it is solved again. With
-//! û_k = 0 that work is, without gravity, P_t·u_t − ½P·WP ≤ 0, so this ends.
+//! **Friction.** With friction, bounces may gain energy, here as in the paper's scheme (T. R. Kane, 1984). If the
+//! contacts of a step have done positive work, in addition to that of moving walls, its û_k are halved and it is
+//! solved again. With û_k = 0 this work is, without gravity, P_t·u_t − ½P·WP ≤ 0, so the process ends.
 //!
-//! **Not with cohesion.** In the paper's law what touches is bonded, and a bond takes part in a shock.
-//! Then all contacts belong to the first pass, which is the law as it was.
+//! **Not with cohesion.** In the paper's law touching grains are bonded, and bonds take part in a shock. All contacts
+//! would then belong to the first pass, which is the unmodified law.
 
 use crate::contact::ContactList;
 use crate::number::Parts;
@@ -49,25 +47,25 @@ use crate::solver::{
     for_each_row, relative_velocities, solve as solve_problem,
 };
 
-/// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
-/// resting contact do that. Less, and a pile at rest would be shaken in each step.
+/// Closing speed below which contacts do not bounce, in g·Δt: a step of gravity alone makes a resting contact close.
+/// If smaller, a pile at rest would be shaken in each step.
 const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
-/// The same in the fastest closing speed of the step, for scenes without gravity. For ρ < 1 a chain
-/// closes infinitely often; smaller: more passes for what cannot be seen.
+/// The same limit relative to the fastest closing speed of the step, for scenes without gravity. For ρ < 1 a chain
+/// closes infinitely often. If smaller, more passes are spent on invisible motion.
 const LEAST_IN_FASTEST: f64 = 1e-6;
-/// Most passes, so that a step ends. A row of n balls needs n − 1 of them.
+/// Limit for the passes of a step. A row of n balls needs n − 1 passes.
 const MOST_PASSES: u32 = 2000;
 
-/// Part of what goes through the contacts that they may gain by rounding and by a step's tolerance.
+/// Relative gain of energy that contacts may have because of rounding and the tolerance of a step.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// How often bounces that gain energy with friction are halved, the last time to nothing.
+/// Number of times that bounces with energy gain are halved; the last time they are set to 0.
 const HALVINGS: u32 = 5;
 
-/// How a pass is solved, whatever the step's own method: contacts that close together are few.
+/// Solver of a pass, whatever solver the step uses, because few contacts close together.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
-/// Solves a prepared step whose contacts open as its shocks say.
+/// Solves a prepared step whose contacts open as its shocks require.
 pub(in crate::sim) fn solve<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -91,9 +89,9 @@ pub(in crate::sim) fn solve<M: Model>(
     report.after(earlier)
 }
 
-/// Follows the shocks of a prepared step, and has its contacts open as they say. Reports the work that
-/// took; whether the step is solved is for the step to say. Leaves a problem with cohesion, or without
-/// shocks that bounce, as it is, and reports nothing.
+/// Computes the shocks of a prepared step and makes its contacts open accordingly. Returns the work of the solves;
+/// the caller reports if the step is solved. Returns `None`, and leaves the problem unchanged, with cohesion or
+/// without shocks that bounce.
 pub(in crate::sim) fn follow<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -127,8 +125,8 @@ pub(in crate::sim) fn follow<M: Model>(
     Some(report)
 }
 
-/// True where the contacts of a solved step have done work on the grains, beyond rounding and beyond what
-/// the walls that move have put in: velocities are taken relative to those.
+/// True if the contacts of a solved step have done work on the grains, beyond rounding and beyond the work of moving
+/// walls. Velocities are relative to those walls.
 fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     let (mut gain, mut scale) = (0.0, 0.0);
     for_each_row(problem, |number, row, motion| {
@@ -142,15 +140,15 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     gain > LEAST_GAIN * scale
 }
 
-/// How far the shocks have gone.
+/// Progress of the shocks.
 struct ImpactSequence<M: Model> {
-    /// Velocities by now.
+    /// Present velocities.
     bodies: Vec<M::Body<f64>>,
     /// u of each row, m/s.
     speeds: Vec<f64>,
     /// P/m_ij of each row so far, m/s.
     impulses: Vec<f64>,
-    /// True where a row's pair touches: one that will do so within the step only has no shock yet.
+    /// True if a row's pair touches. A pair that will only touch within the step has no shock yet.
     touching: Vec<bool>,
 }
 
@@ -165,14 +163,14 @@ impl<M: Model> ImpactSequence<M> {
         Self { bodies, speeds, impulses, touching }
     }
 
-    /// max(−u), m/s, or 0.
+    /// Fastest closing speed max(−u), m/s, or 0.
     fn fastest_closing(&self) -> f64 {
         let all = self.speeds.iter().zip(&self.touching);
         all.filter(|(_, touches)| **touches)
             .fold(0.0, |fastest, (speed, _)| fastest.max((-speed).positive_part()))
     }
 
-    /// Sets `pass` up with the rows that close faster than `least` (m/s). Whether there are any.
+    /// Fills `pass` with the rows that close faster than `least` (m/s). Returns false if there are none.
     fn select(
         &self,
         problem: &StepProblem<M>,
@@ -198,7 +196,7 @@ impl<M: Model> ImpactSequence<M> {
         !pass.rows.is_empty()
     }
 
-    /// Takes over what a pass has led to.
+    /// Adds the result of a pass.
     fn take(&mut self, problem: &StepProblem<M>, pass: &mut StepProblem<M>) {
         for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
@@ -207,7 +205,7 @@ impl<M: Model> ImpactSequence<M> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close, without friction, by the step's own method: there may be many of them.
+    /// Stops all contacts that still close, without friction, with the step's own solver, because there may be many.
     fn stop_the_rest(
         &mut self,
         problem: &StepProblem<M>,
@@ -235,12 +233,12 @@ impl<M: Model> ImpactSequence<M> {
         report
     }
 
-    /// Asks each contact that was struck for the speed that it has come to. One that was not may not
+    /// Requires of each contact that was struck the speed it has reached. A contact that was not struck may not
     /// bounce. The step starts from the impulses of the impacts.
     fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];
-            // The law speaks of velocities relative to a wall that moves.
+            // The law uses velocities relative to a moving wall.
             row.restitution_velocity = if !self.touching[number] {
                 row.restitution_velocity
             } else if impulse > 0.0 {

@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use crate::contact::law::cohesion_force;
 use crate::world::{Parameters, Physics, World};
 
-/// The work that slowly parts two bonded grains of the mean mass m.
+/// The work that slowly separates two bonded grains of the mean mass m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FractureWork {
-    /// J.
+    /// Work, J.
     pub joules: f64,
-    /// In m·g·d, which lifts one of the grains by a diameter. Without gravity the acceleration of the cohesion force
-    /// takes the place of g; 0 without both.
+    /// Work in units of m·g·d, which lifts one of the grains by a diameter. Without gravity the acceleration of the
+    /// cohesion force replaces g; 0 without both.
     pub over_mgd: f64,
 }
 
@@ -21,7 +21,7 @@ pub(super) fn effective_mass_of_mean(world: &World) -> f64 {
     0.5 * (masses.iter().sum::<f64>() / masses.len() as f64)
 }
 
-/// The work of fracture of a law under which a bond of some C₀ (N) takes `work` (J).
+/// The work of fracture of a law in which a bond of cohesion C₀ (N) takes `work(C₀)` (J).
 pub(super) fn fracture_work_of(
     world: &World,
     physics: Physics,

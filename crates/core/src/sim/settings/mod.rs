@@ -1,5 +1,5 @@
-//! All that a simulation can be told between two steps, and whether it goes together. Every simulation asks that, so no
-//! door leads around it.
+//! All settings of a simulation that can change between two steps, and their checks. Every simulation runs these
+//! checks, so they cannot be bypassed.
 
 mod fracture_work;
 mod remedy;
@@ -19,7 +19,7 @@ use crate::setting::{About, Control, Group, Needs, Settable, Value};
 use crate::solver::{FrictionModel, METHODS, SolverSettings};
 use crate::world::{FrictionCone, Gravity, Motion, Parameters, Periodic, Physics, World};
 
-/// How a simulation steps. Whether its parts go together is checked where a simulation takes them on
+/// Settings of a simulation's steps. Their compatibility is checked when a simulation takes them over
 /// ([`Settings::validate`]).
 ///
 /// ```
@@ -39,12 +39,12 @@ use crate::world::{FrictionCone, Gravity, Motion, Parameters, Periodic, Physics,
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// The way to step, with its contact law.
+    /// The stepper, with its contact law.
     #[serde(default)]
     pub stepper: Stepper,
-    /// Numbers of the contact laws, and Δt.
+    /// Parameters of the contact laws, and Δt.
     pub parameters: Parameters,
-    /// How well each step is solved.
+    /// Solver settings of each step.
     #[serde(default)]
     pub solver: SolverSettings,
     /// Remedies for known failures; none in the paper's scheme.
@@ -53,7 +53,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// True if steps are solved under another model of friction than Coulomb's law.
+    /// True if steps are solved under a friction model other than Coulomb's law.
     pub(crate) fn solves_models(&self) -> bool {
         self.stepper.uses_method() && self.solver.solves_models()
     }
@@ -62,7 +62,8 @@ impl Settings {
     pub const STEPPER: About = About {
         name: "stepper",
         value_name: "NAME",
-        help: "Stepper: the contact law and the way to take a step; moreau is that of the paper (`slump list steppers`)",
+        help: "Stepper: the contact law and the way to take a step; moreau is that of the paper (`slump list \
+            steppers`)",
         heading: "Physics",
         kind: Stepper::KIND,
         needs: Needs::Nothing,
@@ -81,7 +82,7 @@ impl Settings {
         groups.into_iter().flatten()
     }
 
-    /// The value of the setting of that name.
+    /// The value of the setting with this name.
     pub fn get(&self, name: &str) -> Option<Value> {
         let Self { stepper, parameters, solver, remedies } = self;
         if name == Self::STEPPER.name {
@@ -90,7 +91,7 @@ impl Settings {
         parameters.get(name).or_else(|| solver.get(name)).or_else(|| remedies.get(name))
     }
 
-    /// Gives the setting of that name a value of its kind. Whether there is one of that name and kind.
+    /// Sets a setting to a value of its kind. Returns false if no setting has that name and kind.
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies } = self;
         if name == Self::STEPPER.name {
@@ -101,13 +102,13 @@ impl Settings {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// The same with another Bond number.
+    /// The same settings with another Bond number.
     pub fn with_bond(mut self, bond: f64) -> Self {
         self.parameters.bond = bond;
         self
     }
 
-    /// The same with another Δt, s.
+    /// The same settings with another Δt, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { parameters: self.parameters.over(time_step_secs), ..self }
     }
@@ -118,10 +119,10 @@ fn names_of<'a>(steppers: impl Iterator<Item = &'a Stepper>) -> Vec<&'static str
 }
 
 impl Settings {
-    /// Checks every number against its range, and what goes with the stepper.
+    /// Checks every number against its range, and its compatibility with the stepper.
     ///
     /// # Errors
-    /// Names the first setting that is outside its range or that the stepper does not take.
+    /// Names the first setting that is outside its range or that the stepper does not support.
     pub fn validate(&self) -> Result<()> {
         self.parameters.validate_each()?;
         (self.stepper.info().check)(&self.parameters)?;
@@ -139,7 +140,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the model of friction goes with the stepper and its cone.
+    /// Checks that the stepper and its cone support the friction model.
     fn check_friction_model(&self) -> Result<()> {
         let (model, cone) = (self.solver.friction_model, self.parameters.cone);
         if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
@@ -159,7 +160,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that all that a world has goes with the settings.
+    /// Checks that the settings support everything in a world.
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
@@ -167,7 +168,7 @@ impl Settings {
         (self.stepper.info().check_in)(world, physics, &self.parameters)
     }
 
-    /// Checks that there is a gravity that can be tilted, if it is.
+    /// Checks that gravity can be tilted, if there is a tilt.
     pub(crate) fn check_tilt(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let refuse = |of: &str| {
             let allowed = format!("left out or 0 where {of}");
@@ -181,7 +182,7 @@ impl Settings {
         }
     }
 
-    /// Checks that there is a way to move walls that a force drives, if any of the motions is one.
+    /// Checks that the stepper and the solver can move walls driven by a force, if there are any.
     pub(crate) fn check_drives(&self, motions: &[Motion]) -> Result<()> {
         if motions.iter().all(|motion| motion.drive.is_none()) {
             return Ok(());
@@ -208,7 +209,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the method knows of images that slide, if there are any.
+    /// Checks that the solver supports sheared borders, if there are any.
     pub(crate) fn check_shear(&self, periodic: Option<Periodic>) -> Result<()> {
         let method = self.solver.method;
         let is_taken = !self.stepper.uses_method() || method.info().takes_shear;
@@ -221,7 +222,7 @@ impl Settings {
         Err(Error::value("solver", method, allowed))
     }
 
-    /// The same without the remedies and the model of friction that its stepper or its method do not take.
+    /// The same settings without the remedies and the friction model that the stepper or the solver do not support.
     pub fn with_only_what_is_taken(mut self) -> Self {
         self.solver = self.solver.by(self.solver.method);
         if !self.stepper.reads("friction-model") {

@@ -1,5 +1,5 @@
-//! The registry of remedies for known failures. All are off in the paper's scheme. A remedy has a row in [`REMEDIES`] and
-//! a setting in [`Remedies`]; `sim::remedies` has the code.
+//! The registry of remedies for known failures. All are off in the paper's scheme. A remedy has a row in [`REMEDIES`]
+//! and a setting in [`Remedies`]; `sim::remedies` contains the code.
 
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;
@@ -8,24 +8,24 @@ use crate::sim::settings::stepper::Stepper;
 /// pass a wall.
 const ROBUST_TRAVEL: f64 = 0.25;
 
-/// What there is to know of a remedy.
+/// Description of a remedy.
 #[derive(Clone, Copy, Debug)]
 pub struct Remedy {
-    /// The name of its setting.
+    /// Name of its setting.
     pub name: &'static str,
-    /// The steppers that take it; others have their own ways, or none.
+    /// The steppers that support it.
     pub taken_by: &'static [Stepper],
-    /// Its setting in the preset `robust`, if it is part of that.
+    /// Value of its setting in the preset `robust`, if it is part of the preset.
     pub robust: Option<Value>,
 }
 
 impl Remedy {
-    /// True where it is asked for.
+    /// True if the remedy is requested.
     pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
         remedies.get(self.name) != Remedies::default().get(self.name)
     }
 
-    /// Asks for it no more.
+    /// Resets the remedy to its default.
     pub(crate) fn leave_out(&self, remedies: &mut Remedies) {
         if let Some(value) = Remedies::default().get(self.name) {
             remedies.set(self.name, value);
@@ -45,12 +45,14 @@ settings! {
             ),
         }
         max_travel: f64 = 0.0, "max-travel" ("D"),
-            "Cut a step into at most 100 pieces so that no grain moves further than this in a piece, in mean diameters; 0 never cuts", {
+            "Cut a step into at most 100 pieces so that no grain moves further than this in a piece, in mean \
+                diameters; 0 never cuts", {
             allowed: "a finite number of diameters ≥ 0; 0 never cuts a step",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
         sequential_impacts: bool = false, "sequential-impacts",
-            "Let shocks travel through touching grains one after the other, as in Newton's cradle; without effect under cohesion", {
+            "Let shocks travel through touching grains one after the other, as in Newton's cradle; without effect \
+                under cohesion", {
             control: shown(
                 "Shocks in sequence",
                 "Shocks run through touching grains one after the other, as in Newton's cradle; \
@@ -69,7 +71,7 @@ settings! {
 }
 
 impl Remedies {
-    /// True where there are none.
+    /// True if no remedy is requested.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
@@ -90,7 +92,7 @@ pub const REMEDIES: [Remedy; 4] = {
         row("push-out", MOREAU, ON),
         row("max-travel", &[Stepper::Moreau, Stepper::Range], Some(Value::Number(ROBUST_TRAVEL))),
         row("sequential-impacts", MOREAU, ON),
-        // Fast grains are cut into pieces of a step: looking ahead would cost them their bounce.
+        // Fast grains are handled by `max-travel`. Looking ahead would reduce their bounce.
         row("speculative", MOREAU, None),
     ]
 };

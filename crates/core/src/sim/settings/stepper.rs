@@ -1,4 +1,4 @@
-//! The registry of steppers: for each one a word of [`Stepper`] and its [`StepperInfo`]. `sim::steppers` has the code.
+//! The registry of steppers: a word of [`Stepper`] and a [`StepperInfo`] for each. `sim::steppers` contains the code.
 
 use crate::error::{Error, Result};
 use crate::setting::words;
@@ -9,7 +9,7 @@ use crate::sim::settings::spring_dashpot::{
 use crate::world::{FrictionCone, Parameters, Physics, World};
 
 words! {
-    /// A way to take a step of Δt, with its contact law.
+    /// A method to take a step of Δt, with its contact law.
     #[derive(Default)]
     pub enum Stepper {
         #[default]
@@ -17,41 +17,42 @@ words! {
         Range = "range", "a bond breaks when it has been opened by δc, at any Δt";
         TgsSoft = "tgs-soft",
             "substeps with soft contacts and a relaxing sweep, as in game engines";
-        Avbd = "avbd", "augmented vertex block descent: penalties that stiffen, body by body, as in recent game engines";
+        Avbd = "avbd", "augmented vertex block descent: penalties that stiffen, body by body, as in recent game \
+            engines";
         Dem = "dem", "smooth discrete elements: springs, dashpots and a constant attraction";
     }
 }
 
-/// What there is to know of a way to step, beside its name and its line.
+/// Description of a stepper, in addition to its name and its line of explanation.
 #[derive(Clone, Copy, Debug)]
 pub struct StepperInfo {
-    /// What a step of it solves, one line.
+    /// The problem that a step solves, in one line.
     pub solves: &'static str,
-    /// Where it comes from.
+    /// Source in the literature.
     pub source: &'static str,
-    /// The settings that it reads, by name, with spaces between. With `solver` among them it solves the step's problem
-    /// by a method.
+    /// The settings that it reads: names separated by spaces. If `solver` is among them, a solver solves the step's
+    /// problem.
     pub settings: &'static str,
-    /// Observables that it has beside those that all have.
+    /// Observables in addition to the common ones.
     pub observables: &'static [&'static str],
-    /// True where it moves walls that a force drives.
+    /// True if it can move walls driven by a force.
     pub takes_drives: bool,
-    /// Refuses numbers that do not go with it.
+    /// Refuses parameters that the stepper does not support.
     pub check: fn(&Parameters) -> Result<()>,
-    /// Refuses numbers that do not go with it in a world.
+    /// Refuses parameters that the stepper does not support in a world.
     pub check_in: fn(&World, Physics, &Parameters) -> Result<()>,
-    /// Substeps of a step; 1 where its problem is solved as a whole.
+    /// Substeps per step; 1 if its problem is solved as a whole.
     pub substeps: fn(&World, Physics, &Parameters) -> u32,
-    /// The longest substep, s, that is stable whatever the grains do; none where that is no question.
+    /// The longest substep, s, that is always stable; `None` if stability is not an issue.
     pub critical_time_step_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
-    /// How long two grains of the mean mass that meet push each other, s; none where that is no time.
+    /// Duration of a collision of two grains of the mean mass, s; `None` if it is not defined.
     pub contact_time_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
-    /// What it takes to break a bond slowly; none where the law does not say, or the physics has no cohesion.
+    /// Work that slowly breaks a bond; `None` if the law does not define it, or without cohesion.
     pub fracture_work: fn(&World, Physics, &Parameters) -> Option<FractureWork>,
 }
 
 impl StepperInfo {
-    /// One that solves the problem of the step as a whole.
+    /// A stepper that solves the problem of the step as a whole.
     const WHOLE: Self = Self {
         solves: "",
         source: "",
@@ -68,7 +69,7 @@ impl StepperInfo {
 }
 
 impl Stepper {
-    /// What there is to know of it.
+    /// Its description.
     pub const fn info(self) -> &'static StepperInfo {
         match self {
             Self::Moreau => &MOREAU,
@@ -79,17 +80,17 @@ impl Stepper {
         }
     }
 
-    /// True where it reads the setting of that name.
+    /// True if it reads the setting with this name.
     pub fn reads(self, name: &str) -> bool {
         self.info().settings.split(' ').any(|setting| setting == name)
     }
 
-    /// True where it solves the step's problem by one of the methods.
+    /// True if it solves the step's problem with a solver.
     pub fn uses_method(self) -> bool {
         self.reads("solver")
     }
 
-    /// True where it tells of bonds.
+    /// True if it has observables of bonds.
     pub(in crate::sim) fn has_bonds(self) -> bool {
         self.info().observables.contains(&"bond_energy")
     }
@@ -128,7 +129,7 @@ const TGS_SOFT: StepperInfo = StepperInfo {
     source: "E. Catto, Solver2D (2024)",
     settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold warm-start substeps",
     takes_drives: true,
-    // More substeps give stiffer contacts that are better solved, and cost more.
+    // More substeps give stiffer and more accurate contacts, and cost more.
     substeps: |_, _, parameters| match parameters.substeps {
         0 => 4,
         asked => asked,
@@ -144,7 +145,7 @@ const AVBD: StepperInfo = StepperInfo {
     ..StepperInfo::WHOLE
 };
 
-/// `warm-start` is not among its settings: springs keep their stretch in any case.
+/// `warm-start` is not among its settings, because springs always keep their stretch.
 const DEM: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",

@@ -1,25 +1,26 @@
 //! Augmented vertex block descent (C. Giles, E. Diaz and C. Yuksel, *Augmented Vertex Block Descent*, ACM
-//! Transactions on Graphics 44, 2025): penalties that stiffen as long as a contact is violated, minimised body by
-//! body, and multipliers that take over what they carry.
+//! Transactions on Graphics 44, 2025): penalties that become stiffer while a contact is violated are minimised body
+//! by body, and multipliers take over the penalty forces.
 //!
-//! With the bodies' velocities V at the end of a substep h as unknowns (their places are x + hV, normals stay) and
-//! c = v − w + b, the relative velocity less that of the wall, where b = gap/h keeps a gap from closing by more than
-//! it is, a contact pushes with the reduced impulse
+//! The unknowns are the bodies' velocities V at the end of a substep h (their places are x + hV, normals stay). The
+//! relative velocity minus that of the wall is c = v − w + b, and b = gap/h keeps a gap from closing by more than
+//! itself. A contact pushes with the reduced impulse
 //!
-//! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  |λ_t| ≤ μσ likewise around λ_t⁰ − κ_t c_t,  κ = k h²/m_ij.
+//! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  λ_t = λ_t⁰ − κ_t c_t projected onto |λ_t| ≤ μσ,  κ = k h²/m_ij.
 //!
-//! One iteration is, **for each body** in turn, a step of Newton's method on its own energy with all others held,
+//! One iteration has two parts. **For each body** in turn it takes a Newton step on the body's own energy with all
+//! others fixed,
 //!
 //! > (D + Σ s κ ∇c ∇cᵀ) ΔV = D (V_free − V) + Σ s λ ∇c,  s = m_ij/m_i,
 //!
-//! where D is the inertia over the mass; and then **for each contact** λ⁰ ← λ, and κ grows by |c| where its bound
-//! did not cut λ. On the left are all contacts, those too that their bounds cut: without these, which hold a body
-//! back, piles that collapse explode. Bodies that touch something start from where they were, so that what slides
-//! is late by 2⁻¹⁰ of what a step would change. Stiffnesses are kept from step to step, a little less each time. A
-//! last pass over the bodies with b of the overlap beyond a margin moves the grains, but leaves their velocities.
+//! with D the inertia divided by the mass. Then **for each contact** λ⁰ ← λ, and κ grows by |c| unless the bound cut
+//! λ. The left side contains all contacts, including those cut by their bounds: without these, which hold a body
+//! back, collapsing piles explode. Bodies in contact start from their previous velocities, so sliding bodies lag by
+//! 2⁻¹⁰ of the change in a step. Stiffnesses are kept from step to step, slightly reduced each time. A last pass over
+//! the bodies, with b from the overlap beyond a margin, moves the grains but does not change their velocities.
 //!
-//! What it does not hold: **momentum**. Bodies see λ before their partners have answered, so that action and
-//! reaction differ by what the iterations leave, and so do work and energy. It has no restitution.
+//! **Momentum** is not conserved: bodies see λ before their partners have responded, so action and reaction differ by
+//! the iteration error, and so do work and energy. There is no restitution.
 
 use glam::{DMat3, DVec3};
 
@@ -32,7 +33,7 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{Model, Row, StepProblem};
 use crate::world::Parameters;
 
-/// Iterations of a substep: what its authors' examples take.
+/// Iterations per substep, as in the authors' examples.
 const ITERATIONS: u32 = 10;
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
@@ -76,7 +77,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         problem.bodies.now = reached;
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substeps::end_substep(problem, &mut contacts, substepping);
-        // The spring that pulls a grain looks at its velocity.
+        // The spring that pulls a grain uses the grain's velocity.
         substepping.store(stage);
     });
     substeps::remember(stage, &contacts, substep_secs);
@@ -86,19 +87,20 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
-/// Softest κ, and that of a new contact. Softer: new contacts sink in; stiffer: blocks cannot pass a force on.
+/// Smallest κ, also that of a new contact. If smaller, new contacts sink in; if larger, blocks cannot transmit a
+/// force.
 const SOFTEST: f64 = 1.0;
-/// Stiffest κ: beyond it a contact's partners no longer see anything else.
+/// Largest κ. Beyond it a contact dominates all other forces on its partners.
 const STIFFEST: f64 = 1e6;
-/// How much κ grows where a contact is violated by g·h. More: columns stand better, but impacts make contacts so stiff
-/// that blocks cannot pass them on, and piles that collapse explode.
+/// Growth of κ if a contact is violated by g·h. If larger, columns are more stable, but impacts make contacts so
+/// stiff that blocks cannot transmit forces, and collapsing piles explode.
 const GROWTH: f64 = 0.1;
-/// What is left of κ from one step to the next. Less: contacts soften where the grains rest.
+/// Fraction of κ kept from one step to the next. If smaller, contacts of resting grains soften.
 const KEPT: f64 = 0.99;
-/// Overlap that is left, in d: cohesive contacts live on it.
+/// Remaining overlap, in d: cohesive contacts need it.
 const MARGIN: f64 = 5e-4;
 
-/// A contact as a body sees it.
+/// A contact from the point of view of one body.
 #[derive(Clone, Copy)]
 struct Side {
     row: u32,
@@ -106,19 +108,19 @@ struct Side {
     end: u8,
 }
 
-/// What the iterations of a step need beside problem and contacts.
+/// Data of a step's iterations, in addition to the problem and the contacts.
 struct BlockDescent {
     substep_secs: f64,
     law: ContactLaw,
     /// g·h, m/s.
     speed_scale: f64,
-    /// Overlap that is left, m.
+    /// Remaining overlap, m.
     margin: f64,
     /// (κ_n, κ_t) of each row.
     stiffness: Vec<[f64; 2]>,
-    /// The contacts of all bodies, one body after the other.
+    /// The contacts of all bodies, body by body.
     sides: Vec<Side>,
-    /// Where those of each body end.
+    /// End of each body's range in `sides`.
     side_ends: Vec<usize>,
 }
 
@@ -149,7 +151,7 @@ impl BlockDescent {
         }
     }
 
-    /// Takes the stiffnesses from where the step before left them.
+    /// Starts with the stiffnesses of the step before.
     fn stiffen<M: Model>(&mut self, stage: &Stage<'_, M>) {
         let memories = stage.state.contacts.memories();
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -160,7 +162,7 @@ impl BlockDescent {
         }
     }
 
-    /// Leaves the stiffnesses to the next step.
+    /// Stores the stiffnesses for the next step.
     fn remember<M: Model>(&self, stage: &mut Stage<'_, M>) {
         let memories = stage.state.contacts.parts_mut().memories;
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -170,8 +172,8 @@ impl BlockDescent {
         }
     }
 
-    /// Begins a substep: bodies that touch something start from where they were, since what carried them then will
-    /// carry them now.
+    /// Begins a substep. Bodies in contact start from their previous velocities, because the contacts that carried
+    /// them before will carry them again.
     fn begin<M: Model>(&mut self, problem: &mut StepProblem<M>, start: &[M::Body<f64>]) {
         for stiffness in self.stiffness.as_flattened_mut() {
             *stiffness = (KEPT * *stiffness).clamp(SOFTEST, STIFFEST);
@@ -185,7 +187,8 @@ impl BlockDescent {
         }
     }
 
-    /// Sets each body's velocity to the minimum of its own energy, the others as they are. `bias` makes b of a gap.
+    /// Sets each body's velocity to the minimum of its own energy, with the others fixed. `bias` computes b from a
+    /// gap.
     fn minimise<M: Model>(
         &self,
         problem: &mut StepProblem<M>,
@@ -194,7 +197,7 @@ impl BlockDescent {
         bias: impl Fn(f64) -> f64,
     ) {
         let inertia = DVec3::from_array(M::INERTIA_OVER_MASS);
-        // Coordinates that are no degrees of freedom get a system that is not singular, and stay.
+        // Coordinates that are not degrees of freedom get a nonsingular system and do not change.
         let diagonal = DVec3::select(inertia.cmpgt(DVec3::ZERO), inertia, DVec3::ONE);
         let mut first = 0;
         for (body, &end) in self.side_ends.iter().enumerate() {
@@ -228,7 +231,7 @@ impl BlockDescent {
         }
     }
 
-    /// Has the multipliers take over what the penalties carry, and stiffens those that are violated.
+    /// Updates the multipliers with the penalty forces, and stiffens violated contacts.
     fn multiply<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -248,7 +251,7 @@ impl BlockDescent {
         }
     }
 
-    /// How a contact pushes at the bodies' present velocities.
+    /// Push of a contact at the bodies' present velocities.
     #[inline(always)]
     fn push<M: Model>(
         &self,
@@ -286,8 +289,8 @@ impl BlockDescent {
     }
 }
 
-/// How a contact pushes: (λ_n, λ_t), m/s, the relative velocities (c_n, c_t) that it answers, m/s, and whether its
-/// bounds cut them.
+/// Push of a contact: (λ_n, λ_t), m/s, the relative velocities (c_n, c_t) that cause it, m/s, and flags for a cut by
+/// the bounds.
 struct ContactPush {
     impulse: [f64; 2],
     violation: [f64; 2],

@@ -1,11 +1,11 @@
-//! Smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law
-//! that S. Luding (2008) starts from: a contact is a spring and a dashpot, and pulls by C₀ as long
-//! as the discs overlap. With δ = −gap the overlap,
+//! Smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law that S. Luding
+//! (2008) starts from: a contact is a spring and a dashpot, and pulls by C₀ while the discs overlap. With the overlap
+//! δ = −gap,
 //!
 //! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ bound(N + C₀).
 //!
-//! Spring and dashpot together never pull: N ≥ −C₀, as everywhere here, and the cone is that of the
-//! contact laws. Where friction slides, ξ is shortened to what gives T at the bound.
+//! Spring and dashpot together never pull: N ≥ −C₀, as in all laws here, and the cone is that of the contact laws. In
+//! sliding contacts ξ is shortened so that T is at the bound.
 
 use crate::contact::{Contact, ContactLaw, ContactMemory, ContactParts, Impulse, Transmitted, law};
 use crate::number::Parts;
@@ -16,8 +16,8 @@ use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
 
-/// Takes one step. Contacts are detected in each substep; the problem's rows, those of the beginning of the
-/// step, get what their pairs transmitted in all.
+/// Takes one step. Contacts are detected in each substep. The problem's rows, which are those of the beginning of the
+/// step, receive the total impulses of their pairs.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let (world, physics) = (&stage.state.world, stage.state.physics);
     let parameters = &settings.parameters;
@@ -76,7 +76,7 @@ fn velocity<M: Model>(
     }
 }
 
-/// The law of the contacts.
+/// The contact law of a substep.
 struct Elements {
     springs: SpringDashpot,
     /// C₀/m_ij = Bond·a, m/s².
@@ -86,7 +86,8 @@ struct Elements {
 }
 
 impl Elements {
-    /// The forces of a contact of effective mass `mass` at a gap and relative velocities, into its memory.
+    /// Computes the forces of a contact of effective mass `mass` from its gap and relative velocities, and stores
+    /// them in its memory.
     #[inline(always)]
     fn force<M: Model>(
         &self,
@@ -112,8 +113,8 @@ impl Elements {
         }
     }
 
-    /// Pushes the bodies by the forces that the present overlaps and the velocities `start` make.
-    /// `pushes` gets m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
+    /// Pushes the bodies by the forces of the present overlaps and the velocities `start`. Fills `pushes` with m_ij,
+    /// the impulses λ and the velocity of the wall (m/s) of each contact.
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,
@@ -158,11 +159,11 @@ impl Elements {
     }
 }
 
-/// Ends a substep of walls that a force drives: like grains they go on by the forces of its beginning. `pushes` are m_ij,
-/// the impulses λ and the velocity of the wall (m/s) of each contact.
+/// Ends a substep of walls driven by a force: like grains, they move with the forces of its beginning. `pushes` are
+/// m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
 ///
-/// That is stable while h < 2 √(M/nk) of a wall of mass M with n contacts of stiffness k, which is surely so where M is
-/// that of as many of the lightest grains: substeps are short enough for those.
+/// This is stable if h < 2 √(M/nk) for a wall of mass M with n contacts of stiffness k. That is guaranteed if M is at
+/// least the mass of n of the lightest grains, because substeps are short enough for these grains.
 fn drive_walls<M: Model>(
     stage: &mut Stage<'_, M>,
     substep_secs: f64,

@@ -1,5 +1,5 @@
-//! The ways to take a step of Δt, each with its own contact law. A stepper is a file or a folder here with its
-//! `advance`, an arm of [`StepperMemory::advance`], and a row in the registry `sim::settings::stepper`.
+//! The steppers, each with its own contact law. A stepper is a file or a folder here with its `advance`, an arm of
+//! [`StepperMemory::advance`], and a row in the registry `sim::settings::stepper`.
 
 #![deny(dead_code, reason = "a stepper that no arm calls would not be missed")]
 
@@ -17,7 +17,7 @@ use crate::sim::settings::{Settings, Stepper};
 use crate::sim::stepping::{Advance, Stage, StepResult};
 use crate::solver::Model;
 
-/// What ways to step remember from one step to the next.
+/// Data that steppers keep from one step to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StepperMemory {
@@ -37,7 +37,7 @@ impl Advance for StepperMemory {
 }
 
 impl StepperMemory {
-    /// Detects the contacts of the next step and sets up its problem, as it is before any solution.
+    /// Detects the contacts of the next step and sets up its problem, without any solution.
     pub(super) fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
             Stepper::Range => range::prepare(stage, settings),
@@ -45,8 +45,8 @@ impl StepperMemory {
         }
     }
 
-    /// Sets up the first problem that the method gets in the next step; where no method gets any, the
-    /// problem that the step is judged by.
+    /// Sets up the first problem that the solver receives in the next step. For steppers without a solver, the
+    /// problem by which the step is judged.
     #[inline(never)]
     pub(super) fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {

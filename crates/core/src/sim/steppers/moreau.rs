@@ -1,5 +1,4 @@
-//! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau), with what remedies
-//! make of it.
+//! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau), modified by remedies.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;
@@ -30,12 +29,12 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let touching = touching_within(stage.state, tolerance);
     let rebound = |Approach { velocity, gap, in_touch }| {
         if !in_touch {
-            // It lands in touch, so that the next step knows it.
+            // It ends the step in touch, so that the next step knows the contact.
             return (gap + touch) / parameters.time_step_secs;
         }
         let rebound = parameters.restitution_velocity(velocity, gravity_magnitude);
         if tolerance > 0.0 && gap > touching {
-            // What comes to the surface within the step bounces, as it does where it touches.
+            // A pair that reaches contact within the step bounces as a touching pair does.
             let meets = rebound < 0.0 && gap + parameters.time_step_secs * velocity < 0.0;
             return if meets { rebound } else { gap / parameters.time_step_secs };
         }
@@ -54,7 +53,7 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     }
 }
 
-/// The gap up to which the law takes grains to touch, m, if contacts pull up to a tolerance.
+/// The gap up to which the law treats grains as touching, m, if contacts pull up to a tolerance.
 fn touching_within(state: &State, tolerance: f64) -> f64 {
     let rounding = (0.5 * tolerance).min(TOUCH_IN_DIAMETERS * state.world.mean_diameter);
     rounding.max(state.candidates.gap_tolerance())

@@ -1,10 +1,9 @@
-//! What ways to step have in common that know no problem of the whole step: they cut Δt into substeps h and
-//! move the grains in each of them.
+//! Common parts of steppers without a problem of the whole step: they divide Δt into substeps h and move the grains
+//! in each.
 //!
-//! The step's Contact Dynamics problem is set up all the same, and judged at the end with the
-//! impulses that were summed up over the step and the velocities it ended with: its residual
-//! is the common measure of all. None iterates to a tolerance, so stopping test, tolerance and sweep
-//! limit mean nothing.
+//! The step's Contact Dynamics problem is still set up. It is judged at the end with the impulses summed over the
+//! step and the final velocities: its residual is the measure common to all steppers. These steppers do not iterate
+//! to a tolerance, so stopping test, tolerance and sweep limit have no effect.
 
 use crate::contact::ContactMemory;
 use crate::sim::settings::Settings;
@@ -14,8 +13,8 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds::{is_open_against, is_within_bounds};
 use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
-/// A step on its way through its substeps. Lives for one step: what is carried on is in the
-/// world and in the contacts' memories.
+/// State of a step during its substeps. It lives for one step: persistent data is in the world and in the contacts'
+/// memories.
 pub(super) struct Substepping<M: Model> {
     /// Number of substeps of the step.
     pub count: u32,
@@ -30,7 +29,8 @@ pub(super) struct Substepping<M: Model> {
 }
 
 impl<M: Model> Substepping<M> {
-    /// Begins a step: sets up its problem with the bodies where they were. The stepper decides the number of substeps.
+    /// Begins a step: sets up its problem with the bodies at their previous velocities. The stepper determines the
+    /// number of substeps.
     pub(super) fn begin_step(stage: &mut Stage<'_, M>, settings: &Settings) -> Self {
         let count = stage.state.substeps(settings);
         set_up(stage, settings);
@@ -44,8 +44,8 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Ends the step of contacts whose bonds live while their gaps are below the touch tolerance, after so many passes
-    /// over them. The contacts are as the last substep has left them.
+    /// Ends the step of a stepper whose bonds exist while their gaps are below the touch tolerance, after `sweeps`
+    /// passes over the contacts. The contacts are in the state of the last substep.
     pub(super) fn end_step_of(
         &self,
         stage: &Stage<'_, M>,
@@ -64,7 +64,7 @@ impl<M: Model> Substepping<M> {
         StepResult { turned_bonds, ..self.end_step(stage, sweeps) }
     }
 
-    /// Ends the step, after so many passes over its contacts.
+    /// Ends the step, after `sweeps` passes over its contacts.
     pub(super) fn end_step(&self, stage: &Stage<'_, M>, sweeps: u32) -> StepResult {
         let Measures { normal_work, tangential_work, wall_work, border_work, .. } =
             self.works.measures;
@@ -101,14 +101,14 @@ impl<M: Model> Substepping<M> {
         stage.state.integrate::<M>(self.substep_secs);
     }
 
-    /// Hands the bodies' velocities to the world.
+    /// Writes the bodies' velocities to the world.
     pub(super) fn store(&self, stage: &mut Stage<'_, M>) {
         for (index, body) in stage.problem.bodies.now.iter().enumerate() {
             M::store(body, &mut stage.state.world, index);
         }
     }
 
-    /// Counts the work of gravity, body forces and the spring in the substep that ends with `bodies`.
+    /// Adds the work of gravity, body forces and the spring in the substep that ends with `bodies`.
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
@@ -117,7 +117,7 @@ impl<M: Model> Substepping<M> {
     }
 }
 
-/// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
+/// Adds the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
 /// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
 #[inline(always)]
 pub(super) fn add_work<M: Model>(
@@ -138,28 +138,27 @@ pub(super) fn add_work<M: Model>(
     }
 }
 
-/// Tells the problem that a step is judged by how walls that a force drives go at its end.
+/// Sets the final speeds of driven walls in the problem by which a step is judged.
 pub(super) fn set_drive_speeds<M: Model>(stage: &mut Stage<'_, M>) {
     let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
     stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
 }
 
-/// A contact in the course of a step.
+/// State of a contact during a step.
 pub(super) struct Touching {
     /// Gap, m.
     pub gap: f64,
-    /// How fast its wall comes, m/s.
+    /// Normal velocity of its wall, m/s.
     pub wall_speed: f64,
-    /// How fast its surface goes along the tangent, m/s.
+    /// Tangential velocity of its wall's surface, m/s.
     pub surface_speed: f64,
-    /// What it knows of a wall that a force drives, if its own is one.
+    /// Data of its driven wall, if it has one.
     pub driven: Option<DrivenRow>,
-    /// 1 but where a wall gives way: how much an impulse changes v_n and v_t, over how much it would if the wall did
-    /// not.
+    /// Response of v_n and v_t to an impulse, relative to a wall that does not yield: 1 unless the wall is driven.
     pub answers: [f64; 2],
-    /// What the law asks it to part with, relative to its wall, m/s; below 0 where it closed.
+    /// Separation speed required by the law, relative to its wall, m/s; below 0 if the contact was closing.
     pub rebound: f64,
-    /// Bond·a·h where it is cohesive in this substep, else 0, m/s.
+    /// Bond·a·h if it is cohesive in this substep, otherwise 0, m/s.
     pub capture_speed: f64,
     /// (λ_n, λ_t) of this substep, m/s.
     pub impulse: [f64; 2],
@@ -174,7 +173,8 @@ impl Touching {
     }
 }
 
-/// The contacts in the order of the rows, with the forces of the step before for so long (s).
+/// The contacts in the order of the rows, with impulses from the forces of the step before, acting for `warm_secs`
+/// (s).
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
     let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
@@ -196,7 +196,7 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
     problem.rows().zip(&problem.rows.contacts).map(contact).collect()
 }
 
-/// Has the gaps follow the bodies' velocities for h.
+/// Updates the gaps by the bodies' velocities for h.
 pub(super) fn follow_gaps<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -208,7 +208,7 @@ pub(super) fn follow_gaps<M: Model>(
     }
 }
 
-/// Sums up impulses and works of a substep.
+/// Adds impulses and works of a substep.
 pub(super) fn end_substep<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -227,7 +227,7 @@ pub(super) fn end_substep<M: Model>(
     }
 }
 
-/// Hands the forces of the last substep to the contacts' memories.
+/// Stores the forces of the last substep in the contacts' memories.
 pub(super) fn remember<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &[Touching],
@@ -246,7 +246,7 @@ pub(super) fn remember<M: Model>(
     }
 }
 
-/// Gives the problem of the step the impulses that were summed up.
+/// Gives the step's problem the summed impulses.
 pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touching]) {
     let capture_speed = problem.law.capture_speed();
     for (row, contact) in problem.rows.iter_mut().zip(contacts) {

@@ -1,23 +1,22 @@
-//! Substeps with soft contacts and a relaxing sweep, as game engines step (E. Catto, *Soft
-//! Constraints*, 2011, and *Solver2D*, 2024).
+//! Substeps with soft contacts and a relaxing sweep, as in game engines (E. Catto, *Soft Constraints*, 2011, and
+//! *Solver2D*, 2024).
 //!
-//! Contacts are those of the beginning of the step; there are no speculative ones. In each substep
-//! h, with σ = λ_n + Bond·a·h the shifted reduced impulse of the contact laws:
+//! Contacts are those of the beginning of the step; there are no speculative contacts. In each substep h, with
+//! σ = λ_n + Bond·a·h the shifted reduced impulse of the contact laws:
 //!
 //! 1. gravity accelerates the bodies;
 //! 2. the impulses of the substep before are applied (warm start);
 //! 3. one sweep over **soft** contacts: v_n + b = −c σ, each an overdamped spring at the gap;
 //! 4. the grains move for h, and each gap changes by h v_n;
-//! 5. one sweep over **rigid** contacts, v_n = 0: it takes the push-out speed out again, so that
-//!    only positions keep it, and no energy comes of it.
+//! 5. one sweep over **rigid** contacts, v_n = 0: it removes the push-out speed again, so that it
+//!    only affects positions and adds no energy.
 //!
-//! At the end of the step, contacts that pushed get the speed that restitution asks of them. Its
-//! threshold is that of the step's problem: contacts that met at less than `restitution_threshold`
-//! g·Δt do not bounce, nor do those that were opening.
+//! At the end of the step, contacts that pushed get the speed required by restitution. Its threshold is that of the
+//! step's problem: contacts that met at less than `restitution_threshold` g·Δt, or were opening, do not bounce.
 //!
-//! **Cohesion** is the bound λ_n ≥ −Bond·a·h of a contact whose gap is negative when the substep
-//! begins, and so a force that depends on neither Δt nor h; with a gap the bound is 0, and the
-//! contact only keeps the grains from closing the gap by more than it is.
+//! **Cohesion** is the bound λ_n ≥ −Bond·a·h of a contact whose gap is negative when the substep begins, and so a
+//! force that depends on neither Δt nor h. With a gap the bound is 0, and the contact only keeps the gap from closing
+//! by more than itself.
 
 use crate::contact::{ContactLaw, law};
 use crate::number::Parts;
@@ -60,7 +59,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substepping.works.drive_work += take_walls(stage, &mut contacts, walls);
         substeps::end_substep(stage.problem, &mut contacts, substepping);
-        // Contacts told of the work of walls with their last speed in the substep; they had the mean one.
+        // The contacts counted the work of walls with the final speed in the substep instead of the mean speed.
         for (row, contact) in stage.problem.rows.fixed.iter().zip(&contacts) {
             if let Some(DrivenRow { by, .. }) = contact.driven {
                 let (wall, along) = (&walls[by.wall as usize], by.part_along(contact.impulse));
@@ -68,7 +67,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
                 substepping.works.measures.wall_work += surplus;
             }
         }
-        // The spring that pulls a grain looks at its velocity.
+        // The spring that pulls a grain uses the grain's velocity.
         substepping.store(stage);
     });
     substeps::remember(stage, &contacts, substep_secs);
@@ -82,7 +81,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, 2 * substeps + 1)
 }
 
-/// Gives contacts that met, and pushed, the speed they part with.
+/// Gives contacts that met and pushed their separation speed.
 fn restitute<M: Model>(
     problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
@@ -99,15 +98,15 @@ fn restitute<M: Model>(
         contact.total[0] += missing;
         let (velocities, wall) = ([[before, 0.0], [after, 0.0]], contact.wall_velocity());
         add_work::<M>(works, row.effective_mass, row.normal, push, velocities, wall);
-        // The wall gave way, which takes so much off its mean speed.
+        // The wall yielded, which reduces its mean speed.
         let given_way = (contact.answers[0] - 1.0) * missing;
         works.measures.wall_work += -0.5 * row.effective_mass * missing * given_way;
         push
     });
 }
 
-/// Calls `change` with every row, its contact and its relative velocities, and pushes the bodies by
-/// the impulses λ that it returns.
+/// Calls `change` for every row with its contact and relative velocities, and pushes the bodies by the returned
+/// impulses λ.
 #[inline(always)]
 fn update<M: Model>(
     problem: &mut StepProblem<M>,
@@ -133,33 +132,33 @@ fn update<M: Model>(
     }
 }
 
-/// ω/2π of the springs, in units of √(g/d): 30 Hz for discs of 1 m, as engines have it. Higher: less
-/// overlap, but beyond [`FREQUENCY_PER_SUBSTEP`] of the substeps' rate it does not go.
+/// Frequency ω/2π of the springs, in units of √(g/d): 30 Hz for discs of 1 m, as in game engines. If larger, overlap
+/// is smaller; [`FREQUENCY_PER_SUBSTEP`] times the substeps' rate is the limit.
 const FREQUENCY: f64 = 10.0;
-/// Largest h ω/2π. Higher: the contact is all but rigid, and one sweep no longer gets through a pile.
+/// Largest h ω/2π. If larger, the contact is nearly rigid, and one sweep no longer transmits forces through a pile.
 const FREQUENCY_PER_SUBSTEP: f64 = 0.25;
-/// ζ of the springs. Lower: overlap leaves in a hurry, and piles jitter.
+/// Damping ratio ζ of the springs. If smaller, overlap is removed too fast, and piles jitter.
 const DAMPING_RATIO: f64 = 10.0;
-/// Fastest push out of an overlap, in units of √(g·d). Higher: deep overlaps explode; lower: they stay.
+/// Fastest push out of an overlap, in units of √(g·d). If larger, deep overlaps explode; if smaller, they stay.
 const PUSH_OUT_SPEED: f64 = 1.0;
 
-/// What all contacts of a step share.
+/// Soft contact constants, common to all contacts of a step.
 ///
-/// **Softness.** The spring's force is −k s − γ ṡ at gap s, with ω² = k/m_ij and ζ = γ/(2 m_ij ω). Taken
-/// at the end of the substep, s + h v and v, its impulse is σ = −h(ω²(s + h v) + 2ζω v), which with
-/// a = 2ζ + hω is σ = −hωa (v + s ω/a). A Gauss–Seidel update asks that of the velocity v + Δσ it makes:
+/// **Softness.** The spring's force is −k s − γ ṡ at gap s, with ω² = k/m_ij and ζ = γ/(2 m_ij ω). Evaluated at the
+/// end of the substep, with s + h v and v, its impulse is σ = −h(ω²(s + h v) + 2ζω v), which with a = 2ζ + hω is
+/// σ = −hωa (v + s ω/a). A Gauss–Seidel update requires this for the new velocity v + Δσ:
 ///
 /// > Δσ = −(1 − c)(v + s ω/a) − c σ,  c = 1/(1 + hωa).
 ///
-/// The spring carries σ, not λ_n: N + C₀ = −k s at rest, as for the smooth discrete elements. Sprung at
-/// λ_n, a contact that pulls would rest at a positive gap, where it has no cohesion, and let go.
+/// The spring force corresponds to σ, not to λ_n: N + C₀ = −k s at rest, as for the smooth discrete elements. If it
+/// corresponded to λ_n, a pulling contact would rest at a positive gap, at which it has no cohesion, and break.
 struct Softness {
     substep_secs: f64,
     /// ω/a, 1/s.
     rate: f64,
     /// c.
     compliance: f64,
-    /// m/s.
+    /// Push-out speed, m/s.
     push_out_speed: f64,
     law: ContactLaw,
 }
@@ -180,7 +179,7 @@ impl Softness {
         }
     }
 
-    /// Projects the impulses of the substep before on what the contact allows now.
+    /// Projects the impulses of the substep before onto the range that the contact allows now.
     #[inline(always)]
     fn warm_start<M: Model>(&self, contact: &mut Touching) -> [f64; 2] {
         let shifted = law::signorini(contact.impulse[0] + contact.capture_speed);
@@ -190,7 +189,7 @@ impl Softness {
         contact.impulse
     }
 
-    /// One contact of a sweep, with its relative velocities: the change of its impulses.
+    /// Updates one contact in a sweep, given its relative velocities. Returns the change of its impulses.
     #[inline(always)]
     fn solve<M: Model, const SOFT: bool>(
         &self,
@@ -229,14 +228,14 @@ impl Softness {
     }
 }
 
-/// Walls that a force drives, among soft contacts: bodies of one speed V each (`solver::problem::walls`).
+/// Walls driven by a force, among soft contacts: bodies with one speed V each (`solver::problem::walls`).
 ///
-/// In a substep such a wall goes with V_free = r (M V⁻ + hF), r = 1/(M + ch), and an impulse λ of one of its contacts
-/// changes it by −r m_i (b_n λ_n + b_t λ_t) at once: the next contact of the sweep finds it as it goes then. With
-/// κ = r m_i an impulse changes v_n by d_n λ_n, d_n = 1 + κb_n², and v_t by 3 d_t λ_t, d_t = 1 + κb_t²/3, so that a
-/// contact's update is divided by them; its spring is that of its own mass, m_i/d_n.
+/// In a substep such a wall moves with V_free = r (M V⁻ + hF), r = 1/(M + ch), and an impulse λ of one of its
+/// contacts changes V by −r m_i (b_n λ_n + b_t λ_t) at once, so that the next contact of the sweep uses the new
+/// speed. With κ = r m_i an impulse changes v_n by d_n λ_n, d_n = 1 + κb_n², and v_t by 3 d_t λ_t, d_t = 1 + κb_t²/3.
+/// So a contact's update is divided by these, and its spring is that of its own mass, m_i/d_n.
 impl Touching {
-    /// Sees how its wall goes now, if that is driven.
+    /// Reads the present velocity of its wall, if the wall is driven.
     #[inline(always)]
     fn see(&mut self, walls: &[DrivenWall]) {
         if let Some(DrivenRow { by, still, speed, .. }) = self.driven {
@@ -246,7 +245,7 @@ impl Touching {
         }
     }
 
-    /// Pushes its wall back by the impulses λ (m/s) on a grain of that mass, if that is driven.
+    /// Applies the reaction of the impulses λ (m/s) on a grain of mass `mass` to its wall, if the wall is driven.
     #[inline(always)]
     fn push_back(&self, walls: &mut [DrivenWall], mass: f64, impulse: [f64; 2]) {
         if let Some(DrivenRow { by, .. }) = self.driven {
@@ -256,8 +255,7 @@ impl Touching {
     }
 }
 
-/// Begins a substep of such walls, of which contacts know from then on what they answer with. One that takes no time is
-/// a blow.
+/// Begins a substep of driven walls, and sets the responses of their contacts. A substep of length 0 is an impact.
 fn begin_walls<M: Model>(
     stage: &Stage<'_, M>,
     contacts: &mut [Touching],
@@ -276,7 +274,8 @@ fn begin_walls<M: Model>(
     driven
 }
 
-/// Has the walls go on as a sweep has left them, and gives the work of what drives them since the substep began, J.
+/// Stores the speeds of the walls after a sweep, and returns the work of the driving forces since the substep began,
+/// J.
 fn take_walls<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &mut [Touching],

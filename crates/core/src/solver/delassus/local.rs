@@ -1,20 +1,20 @@
-//! One contact of a problem in W alone, solved exactly.
+//! Exact solution of one contact of a problem in W alone.
 //!
-//! A grain of any shape couples its normal to its tangent (W_nt ≠ 0), so the two projections of a
-//! disc's contact become an enumeration. With p = P_n + c₀ and b the velocity that the other contacts
-//! leave, both in the shifted cone,
+//! A grain that is not a disc couples its normal and tangential directions (W_nt ≠ 0), so the two projections of a
+//! disc's contact become an enumeration of cases. With p = P_n + c₀ and b the velocity that the other contacts make,
+//! both in the shifted cone,
 //!
 //! > u = W_kk (p, P_t) + b,  0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp, sliding opposes u_t,
 //!
-//! > open: p = P_t = 0 where b_n ≥ 0;
-//! > stick: (p, P_t) = −W_kk⁻¹ b where that lies in the cone;
-//! > slip: P_t = sμp with s = ±1, so that p = −b_n / (W_nn + sμW_nt), where s·u_t ≤ 0.
+//! > open: p = P_t = 0 if b_n ≥ 0;
+//! > stick: (p, P_t) = −W_kk⁻¹ b if that is in the cone;
+//! > slip: P_t = sμp with s = ±1, so that p = −b_n / (W_nn + sμW_nt), if s·u_t ≤ 0.
 //!
-//! Where μ|W_nt| < W_nn there is just one; else the first that fits is taken. In the compressive cone
-//! a contact with p ≤ c₀ does not rub, and one with more is a contact in a shifted cone whose p is
-//! p − c₀ and whose b is b + c₀(W_nn, W_nt).
+//! If μ|W_nt| < W_nn there is exactly one solution; otherwise the first case that fits is taken. In the compressive
+//! cone a contact with p ≤ c₀ has no friction. A contact with p > c₀ is a contact in a shifted cone with p − c₀ instead
+//! of p and b + c₀(W_nn, W_nt) instead of b.
 
-/// What the solution of one contact needs, worked out once.
+/// Numbers that the solution of one contact needs, computed once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalBlock {
     /// W_nn, W_nt, W_tt, 1/kg.
@@ -23,7 +23,7 @@ pub(super) struct LocalBlock {
     pub tangential: f64,
     /// W_kk⁻¹ in the same order, kg.
     inverse: [f64; 3],
-    /// 1/(W_nn + sμW_nt) for s = −1, +1, kg; not positive where no slip that way can bear a load.
+    /// 1/(W_nn + sμW_nt) for s = −1, +1, kg; not positive if slip in that direction cannot carry a load.
     slip_masses: [f64; 2],
     /// μ.
     pub friction: f64,
@@ -32,7 +32,7 @@ pub(super) struct LocalBlock {
 }
 
 impl LocalBlock {
-    /// `block` is W_kk, positive definite.
+    /// Creates the block from W_kk (`block`), which must be positive definite.
     pub(super) fn new(block: [[f64; 2]; 2], friction: f64, cohesion_impulse: f64) -> Self {
         let [[normal, mixed], [_, tangential]] = block;
         let determinant = normal * tangential - mixed * mixed;
@@ -47,7 +47,7 @@ impl LocalBlock {
         }
     }
 
-    /// (p, P_t), N·s, that solves the contact where the others leave it the velocity `free` (m/s).
+    /// (p, P_t), N·s, that solves the contact if its velocity without its own impulse is (`normal`, `tangential`), m/s.
     #[inline(always)]
     pub(super) fn solve(&self, [normal, tangential]: [f64; 2], compressive_cone: bool) -> [f64; 2] {
         if normal >= 0.0 {
@@ -65,7 +65,7 @@ impl LocalBlock {
         [pressure + cohesion, rubbing]
     }
 
-    /// Stick or slip of a contact that would close.
+    /// Stick or slip of a contact that would close without an impulse.
     #[inline(always)]
     fn pressed(&self, free @ [normal, tangential]: [f64; 2]) -> [f64; 2] {
         let [inverse_normal, inverse_mixed, inverse_tangential] = self.inverse;
@@ -81,11 +81,11 @@ impl LocalBlock {
             return impulse;
         }
         let (other, pushed_along_other) = self.slip(free, stuck[1] <= 0.0);
-        // By rounding neither may fit.
+        // Because of rounding it is possible that no case fits.
         if pushed_along_other < pushed_along { other } else { impulse }
     }
 
-    /// The impulses of slip with P_t = ±μp, and s·u_t, which fits where it is not positive.
+    /// The impulses of slip with P_t = ±μp, and s·u_t, which is not positive if this case fits.
     #[inline(always)]
     fn slip(&self, [normal, tangential]: [f64; 2], positive: bool) -> ([f64; 2], f64) {
         let side = if positive { 1.0 } else { -1.0 };
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
     use crate::number::Parts;
 
-    /// How far (p, P_t) is from the contact's law, over the size of what is compared.
+    /// Violation of the contact's law by (p, P_t), relative to the size of the velocities that are compared.
     fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
         let [p, t] = block.solve(free, compressive);
         let u = [
@@ -145,7 +145,7 @@ mod tests {
         assert!(kinds.iter().all(|&count| count > 50), "each kind arose: {kinds:?}");
     }
 
-    /// The two cones differ where cohesion alone holds a sliding contact.
+    /// The two cones differ if cohesion alone holds a sliding contact.
     #[test]
     fn a_pulling_contact_rubs_in_the_shifted_cone_alone() {
         let block = LocalBlock::new([[2.0, 0.0], [0.0, 6.0]], 0.5, 1.0);

@@ -1,19 +1,19 @@
-//! W and q: those of a step's problem, and W from its entries, as 2×2 blocks in rows, checked.
+//! Assembles W and q of a step's problem; checks W given by its entries, and sorts it into 2×2 blocks.
 //!
-//! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in
-//! them, W = G M⁻¹ Gᵀ and q = G v^free, plus restitution's term in the normal rows. A contact
-//! meets those that share one of its grains, and no others: where n of them share one, W has n² blocks.
+//! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in these coordinates,
+//! W = G M⁻¹ Gᵀ and q = G v^free, plus the restitution term in the normal rows. A contact is coupled only to contacts
+//! that share one of its grains: n contacts of one grain give n² blocks.
 
 use crate::error::{self, Error, Result};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{Row, StepProblem};
 
-/// Two entries of W that stand opposite each other may differ by this part of √(W_ii W_jj): what a
-/// file of six digits loses.
+/// Two opposite entries of W may differ by this fraction of √(W_ii W_jj), which is the rounding of a file with six
+/// digits.
 const ASYMMETRY: f64 = 1e-5;
 
-/// Entries of a sparse matrix; those of one place are added. Plain data, checked where a problem
-/// is made of it.
+/// Entries of a sparse matrix; entries at the same position are added. This is plain data, which is checked when a
+/// problem is created from it.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Triplets {
@@ -26,7 +26,7 @@ pub struct Triplets {
 }
 
 impl Triplets {
-    /// (row, column, entry), in the order in which they stand.
+    /// (row, column, entry), in stored order.
     pub fn entries(&self) -> impl Iterator<Item = (u32, u32, f64)> {
         let places = self.row.iter().zip(&self.col);
         places.zip(&self.val).map(|((&row, &column), &value)| (row, column, value))
@@ -53,10 +53,10 @@ pub(super) fn check_each(
     }
 }
 
-/// [row contact, column contact] and what stands there.
+/// [row contact, column contact], and the block at this position.
 pub(super) type EntryBlock = ([u32; 2], [[f64; 2]; 2]);
 
-/// The blocks of W in rows.
+/// Checks the entries of W, and sorts them into blocks by row and column.
 pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBlock>> {
     let Triplets { row, col, val } = matrix;
     error::check(!val.is_empty(), "W", "empty", "a matrix with an entry on each diagonal place")?;
@@ -77,7 +77,7 @@ pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBloc
         if blocks.last().is_none_or(|(last, _)| *last != place) {
             blocks.push((place, [[0.0; 2]; 2]));
         }
-        // A block has just been pushed where there was none.
+        // A block has just been pushed if there was none.
         let (_, block) = blocks.last_mut().expect("a block");
         block[row[entry] as usize % 2][col[entry] as usize % 2] += val[entry];
     }
@@ -125,10 +125,10 @@ pub(super) fn check_symmetry(blocks: &[EntryBlock], own: &[[[f64; 2]; 2]]) -> Re
     Ok(())
 }
 
-/// Entries of W: a problem file of this many has some 500 MB. Piles of 300,000 discs have fewer.
+/// Maximum number of entries of W. A problem file of this size has about 500 MB. Piles of 300,000 discs have fewer.
 const MOST_ENTRIES: u64 = 20_000_000;
 
-/// W and q of a step's problem, its contacts in the order of its rows.
+/// W and q of a step's problem, with contacts in the order of its rows.
 pub struct Assembled {
     /// W, 1/kg, exactly symmetric, sorted by row and column, without zeros.
     pub matrix: Triplets,
@@ -137,11 +137,11 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Works W and q out. On a line, where there is no tangent, a tangential row has W_tt = W_nn and
-    /// meets nothing.
+    /// Computes W and q. On a line, which has no tangent, a tangential row has W_tt = W_nn and no coupling to other
+    /// rows.
     ///
     /// # Errors
-    /// Names the body that most contacts share, where they make W too large.
+    /// Names the body with the most contacts, if W would have too many entries.
     // Compiled once, in this crate.
     #[inline(never)]
     pub fn of<M: Model>(problem: &StepProblem<M>) -> Result<Self> {
@@ -182,7 +182,7 @@ impl Assembled {
     }
 }
 
-/// Checks that W has room, by the contacts of each body: each meets all others.
+/// Checks the number of entries of W from the contacts of each body: each contact is coupled to all others of the body.
 fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
     let entries: u64 = contacts_of_body.iter().map(of_body).sum();
@@ -199,7 +199,7 @@ fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     }
 }
 
-/// The entry of W of two rows, each by its number and axis: 0 normal, 1 tangential.
+/// The entry of W for two rows, each given by its number and axis: 0 normal, 1 tangential.
 fn entry<M: Model>(
     problem: &StepProblem<M>,
     [number, axis]: [usize; 2],

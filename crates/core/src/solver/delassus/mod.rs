@@ -1,20 +1,19 @@
-//! A contact problem in the Delassus operator alone: u = W r + q, with nothing known of bodies.
+//! A contact problem given by the Delassus operator alone: u = W r + q, without any bodies.
 //!
-//! W (1/kg) says how the impulse of one contact changes the velocity of another; q (m/s) is the
-//! relative velocity without contact impulses, restitution's term included. Rows and columns come
-//! as N0, T0, N1, T1, … and r = (P_n, P_t), in N·s. The law is that of `contact::law`, with a
-//! cohesion impulse c₀ = C₀Δt and a friction μ of each contact's own:
+//! W (1/kg) is the change of the velocity of one contact per impulse of another; q (m/s) is the relative velocity
+//! without contact impulses, restitution term included. Rows and columns are ordered as N0, T0, N1, T1, …, and
+//! r = (P_n, P_t) in N·s. The law is that of `contact::law`; each contact has its own cohesion impulse c₀ = C₀Δt and
+//! friction μ:
 //!
 //! > 0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp (shifted cone) or ≤ μ max(p − c₀, 0) (compressive), p = P_n + c₀.
 //!
-//! W is kept as 2×2 blocks in compressed sparse rows, each contact's own block apart. The state is
-//! (p, P_t), so that cohesion is a part of the free velocity and costs nothing: u = W (p, P_t) + q',
-//! q' = q − W (c₀, 0).
+//! W is stored as 2×2 blocks in compressed sparse rows, each contact's own block separately. The state is (p, P_t).
+//! Cohesion is then part of the free velocity and costs nothing: u = W (p, P_t) + q', q' = q − W (c₀, 0).
 //!
-//! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly with the impulses that the ones
-//! before it left. For methods that treat all impulses as one vector s = P/√m_n with m_n = 1/W_nn, so that A is W
-//! between √m_n and √m_n. Where W_nt ≠ 0 a contact's own block of A has entries off its diagonal; no method on
-//! that trait asks for them to be zero.
+//! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly for the present impulses of the
+//! others. Methods that treat all impulses as one vector use s = P/√m_n with m_n = 1/W_nn, so that A is W multiplied by
+//! √m_n from both sides. If W_nt ≠ 0, a contact's own block of A has off-diagonal entries; no method on `ContactSystem`
+//! needs them to be zero.
 
 mod local;
 mod matrix;
@@ -31,31 +30,31 @@ use crate::error::{self, Error, Result};
 use crate::number::Parts;
 use crate::world::FrictionCone;
 
-/// The residual, which costs as much as a sweep, is looked at where ‖ΔP‖₂ of a sweep is at most this
-/// many times the error allowed: what a sweep changes is about the error before it. A smaller number
-/// risks a sweep in vain, a larger one a look in vain.
+/// The residual, which costs as much as a sweep, is computed if ‖ΔP‖₂ of a sweep is at most this many times the allowed
+/// error, because the change in a sweep is about the error before it. A smaller number risks an unnecessary sweep, a
+/// larger one an unnecessary residual.
 const NEAR: f64 = 2.0;
-/// It is looked at after every so many sweeps in any case.
+/// The residual is also computed whenever this many sweeps have passed.
 const TEST_INTERVAL: u32 = 16;
 
-/// What one contact does to another.
+/// The effect of one contact's impulse on another contact's velocity.
 #[derive(Clone, Copy, Debug)]
 struct DelassusBlock {
     block: [[f64; 2]; 2],
     contact: u32,
 }
 
-/// A contact as its update reads it.
+/// A contact in the form that its update reads.
 #[derive(Clone, Copy, Debug)]
 struct DelassusRow {
     local: LocalBlock,
     /// q', m/s.
     free: [f64; 2],
-    /// Its neighbours are those from here to the next contact's.
+    /// Index of its first neighbour; its neighbours end where those of the next contact begin.
     start: u32,
 }
 
-/// A contact problem in W alone, and the impulses of its contacts.
+/// A contact problem in W alone, with the impulses of its contacts.
 #[derive(Clone, Debug)]
 pub struct DelassusProblem {
     rows: Vec<DelassusRow>,
@@ -68,12 +67,12 @@ pub struct DelassusProblem {
 }
 
 impl DelassusProblem {
-    /// A problem of `friction.len()` contacts without impulses. `free_velocities` is q (two entries a
-    /// contact, m/s), `friction` and `cohesion_impulses` (N·s) have an entry a contact.
+    /// A problem of `friction.len()` contacts with zero impulses. `free_velocities` is q (two entries per contact,
+    /// m/s); `friction` and `cohesion_impulses` (N·s) have one entry per contact.
     ///
     /// # Errors
-    /// Names what is not finite, out of range, of the wrong length, or not symmetric. Each
-    /// contact's own 2×2 block has to be positive definite.
+    /// Names a value that is not finite, out of range or not symmetric, or an array of the wrong length. Each contact's
+    /// own 2×2 block has to be positive definite.
     pub fn new(
         matrix: &Triplets,
         free_velocities: &[f64],
@@ -129,7 +128,7 @@ impl DelassusProblem {
         self.rows.len()
     }
 
-    /// True where there is no contact; never so.
+    /// Returns true if there are no contacts, which never happens.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -142,7 +141,7 @@ impl DelassusProblem {
             .map(|(impulse, row)| [impulse[0] - row.local.cohesion_impulse, impulse[1]])
     }
 
-    /// Sets (P_n, P_t) of each contact, N·s, as they are.
+    /// Sets (P_n, P_t) of each contact, N·s, without projecting them on the law.
     pub fn set_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let places = self.impulses.iter_mut().zip(&self.rows);
         for ((place, row), [normal, tangential]) in places.zip(impulses) {
@@ -155,10 +154,9 @@ impl DelassusProblem {
         (0..self.len()).map(|contact| self.velocity(contact))
     }
 
-    /// The natural map's residual, as `solver::residual` has it of bodies, with m_n = 1/W_nn and
-    /// m_t = 1/W_tt, and all of u and v^free from W and q. A W_nt that is not zero changes nothing of
-    /// it: the map is zero just where the law holds, whatever the positive numbers m_n and m_t. Where
-    /// μ = 0, a contact's tangential part has no place in the scale.
+    /// The residual of the natural map, as [`residual`](crate::solver::residual) for bodies, with m_n = 1/W_nn,
+    /// m_t = 1/W_tt, and u and v^free from W and q. W_nt ≠ 0 is no restriction: the map is zero exactly if the law is
+    /// satisfied, for any positive m_n and m_t. If μ = 0, the tangential part of a contact does not enter the scale.
     pub fn residual(&self) -> f64 {
         let errors = self.rows.iter().enumerate().map(|(contact, row)| {
             row.squared_error(self.impulses[contact], self.velocity(contact), self.compressive_cone)
@@ -205,7 +203,7 @@ impl DelassusRow {
         let rubs =
             if compressive { (p - cohesion_impulse).positive_part() } else { p.positive_part() };
         let bound = friction * rubs;
-        // Impulses that have outgrown all numbers have none where there is no friction.
+        // If an impulse has overflowed and μ = 0, the bound is NaN, and so is the error.
         if bound.is_nan() {
             return f64::NAN;
         }
@@ -228,11 +226,10 @@ impl DelassusRow {
     }
 }
 
-/// Solves a problem from its present impulses with the method of the settings, to a residual of
-/// their tolerance.
+/// Solves a problem from its present impulses with the method of the settings, to a residual of their tolerance.
 ///
 /// # Errors
-/// Where the method needs bodies, or the settings another stopping test.
+/// If the settings are not valid, ask for another stopping test, or name a method that needs bodies.
 pub fn solve_delassus(
     problem: &mut DelassusProblem,
     settings: &SolverSettings,
@@ -264,7 +261,7 @@ fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveRepo
 }
 
 impl DelassusProblem {
-    /// One pass over all contacts; gives Σ‖ΔP‖², (N·s)².
+    /// One pass over all contacts. Returns Σ‖ΔP‖², (N·s)².
     fn pass(&mut self) -> f64 {
         let mut squared_change = 0.0;
         for contact in 0..self.len() {
@@ -327,8 +324,8 @@ impl ContactSystem for DelassusProblem {
         row.local.friction * (normal - shift).positive_part()
     }
 
-    /// With E the diagonal of A, a row of E^−½ A E^−½ has absolute entries whose sum dominates its
-    /// diagonal (Gershgorin), so A ⪯ E/d where 1/d is the larger of a contact's two sums.
+    /// With E the diagonal of A, a row of E^−½ A E^−½ has absolute entries whose sum dominates its diagonal
+    /// (Gershgorin). So A ⪯ E/d, where 1/d is the larger of a contact's two row sums.
     fn splitting(&self, weights: &mut Vec<f64>) {
         weights.clear();
         let diagonal = |contact: usize| {
@@ -364,7 +361,7 @@ impl ContactSystem for DelassusProblem {
         Self::residual(self)
     }
 
-    /// Without bodies the stopping test is always the residual's.
+    /// Without bodies the stopping test is always the residual.
     fn is_settled(&self, _before: &[[f64; 2]], settings: &SolverSettings) -> bool {
         debug_assert_eq!(settings.stop, StopTest::Residual);
         self.residual() <= settings.tolerance
@@ -375,8 +372,8 @@ impl ContactSystem for DelassusProblem {
 mod tests {
     use super::*;
 
-    /// Two contacts on opposite sides of one body, which close at 1 m/s
-    /// each: u₀ + u₁ = −2 m/s whatever the impulses, so that not both can be ≥ 0.
+    /// Two contacts on opposite sides of one body, each closing at 1 m/s: u₀ + u₁ = −2 m/s for any impulses, so they
+    /// cannot both be ≥ 0.
     #[test]
     fn a_problem_without_solution_is_told_from_one_that_was_stopped_too_early() {
         let matrix = Triplets {

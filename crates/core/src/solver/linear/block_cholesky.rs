@@ -1,25 +1,25 @@
-//! A sparse symmetric factorisation of D × D blocks, one row and column of blocks a body.
+//! A sparse symmetric factorisation of D × D blocks, one row and one column of blocks per body.
 //!
-//! With U_ab the block of places a < b and D_k what is left of a diagonal block when its turn comes,
-//! eliminating place k makes
+//! With U_ab the block of places a < b and D_k the diagonal block of k after all earlier eliminations, eliminating
+//! place k makes
 //!
 //! > D_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all later neighbours a ≤ b of k,
 //!
-//! and A = WᵀW in the end, W having L_kᵀ on its diagonal. That is half the work and half the memory of the
-//! unsymmetric factors, and a positive definite matrix needs no pivoting. Places with the same later neighbours, a
-//! supernode, are taken together: each block that they change is fetched once and changed by all of them, which are at
-//! hand (C. C. Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised and not inverted: one that is stiff along
-//! one direction and soft along another loses half of all digits in an inverse.
+//! and finally A = WᵀW, with L_kᵀ on the diagonal of W. This takes half the work and half the memory of unsymmetric
+//! factors, and a positive definite matrix needs no pivoting. Places with the same later neighbours form a supernode
+//! and are eliminated together: each block that they change is fetched once and changed by all of them while they are
+//! in the cache (C. C. Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised rather than inverted: the inverse
+//! of a block that is stiff along one direction and soft along another loses half of all digits.
 
 use std::ops::Range;
 
 use super::block_lu::Block;
 use super::elimination::Elimination;
 
-/// Rows of a block are as long as a vector register, so that a row is one operation.
+/// Rows of a block are padded to the length of a vector register, so that a row is one operation.
 const WIDTH: usize = 4;
 
-/// A block whose columns from D on are 0.
+/// A block padded with columns of 0 after the first D.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 struct Padded<const D: usize>([[f64; WIDTH]; D]);
@@ -28,19 +28,20 @@ impl<const D: usize> Padded<D> {
     const ZERO: Self = Self([[0.0; WIDTH]; D]);
 }
 
-/// A symmetric matrix, then its factors. Memory is kept between matrices.
+/// A symmetric matrix, replaced by its factors in [`SymmetricBlockMatrix::factorise`]. Memory is kept between matrices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SymmetricBlockMatrix<const D: usize> {
-    /// Diagonal blocks by place; then L_k, with the inverses of its diagonal entries.
+    /// Diagonal blocks by place; after the factorisation L_k, with the inverses of its diagonal entries on the
+    /// diagonal.
     diagonal: Vec<Padded<D>>,
     /// Block (a, b) for each pair a < b of neighbours, numbered as in [`Elimination::later`].
     upper: Vec<Padded<D>>,
-    /// What the rows of a supernode have outside of it, column by column.
+    /// Blocks of a supernode's rows outside the supernode, column by column.
     panel: Vec<Padded<D>>,
 }
 
 impl<const D: usize> SymmetricBlockMatrix<D> {
-    /// A zero matrix of the given structure.
+    /// Sets the matrix to zero, with the given structure.
     pub(crate) fn clear(&mut self, elimination: &Elimination) {
         self.diagonal.clear();
         self.diagonal.resize(elimination.body_at.len(), Padded::ZERO);
@@ -54,8 +55,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         add(&mut self.diagonal[place as usize], block);
     }
 
-    /// Adds to the block of two places that are neighbours, `number` being the index of the later one among
-    /// [`Elimination::later`]; its rows are those of the earlier place.
+    /// Adds to the block of two neighbouring places; `number` is the index of the later place in
+    /// [`Elimination::later`]. The rows of the block belong to the earlier place.
     #[inline(always)]
     pub(crate) fn add_to_upper(&mut self, number: u32, block: &Block<D>) {
         add(&mut self.upper[number as usize], block);
@@ -65,14 +66,14 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx") {
-            // SAFETY: the processor has just been asked.
+            // SAFETY: AVX has just been detected.
             unsafe { self.factorise_with_avx(elimination) };
             return;
         }
         self.factorise_each(elimination);
     }
 
-    /// The same operations in the same order, and so bitwise the same result, four at a time.
+    /// Performs the same operations in the same order, four at a time, with bitwise the same result.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx")]
     fn factorise_with_avx(&mut self, elimination: &Elimination) {
@@ -101,7 +102,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Factorises a place's row, and takes from the rest of its supernode, up to `end`, what that changes there.
+    /// Factorises a place's row, and subtracts its contribution to the rest of its supernode, which ends before `end`.
     #[inline(always)]
     fn factorise_place(&mut self, elimination: &Elimination, place: usize, end: usize) {
         let Self { diagonal, upper, .. } = self;
@@ -111,7 +112,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         for block in &mut upper[row.clone()] {
             solve_lower(&factor, block);
         }
-        // Rows of a supernode end alike.
+        // All rows of a supernode end with the same blocks.
         let (done, ahead) = upper.split_at_mut(row.end);
         for (later, first) in (place + 1..end).zip(row.clone()) {
             let of_first = &done[first];
@@ -123,11 +124,11 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// What a place changes that is a supernode by itself.
+    /// Subtracts the contributions of a place that is a supernode by itself.
     #[inline(always)]
     fn subtract_row(&mut self, elimination: &Elimination, row: Range<usize>, targets: &[u32]) {
         let Self { diagonal, upper, .. } = self;
-        // There is a target for every pair, in this very order.
+        // `targets` has an entry for every pair, in this order.
         let mut targets = targets.iter();
         for first in row.clone() {
             let of_first = upper[first];
@@ -140,7 +141,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// What a supernode changes outside of itself: each block once, by all places.
+    /// Subtracts a supernode's contributions to blocks outside it: each block once, for all its places.
     #[inline(always)]
     fn subtract_supernode(
         &mut self,
@@ -150,7 +151,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     ) {
         let Self { diagonal, upper, panel } = self;
         let outside = elimination.row(places.end - 1);
-        // One later neighbour after the other, for each what all places have with it.
+        // For one later neighbour after the other, the blocks that all places have with it.
         panel.clear();
         for edge in outside.clone() {
             let back = outside.end - edge;
@@ -161,7 +162,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
             let of_first = with(first);
             let on_first = &mut diagonal[elimination.later[first] as usize];
             [*on_first] = less_products([*on_first], of_first, [of_first]);
-            // There is a target for every pair, in this very order.
+            // `targets` has an entry for every pair, in this order.
             let (of_these, rest) = targets.split_at(outside.end - first - 1);
             targets = rest;
             for (second, of_these) in (first + 1..).step_by(3).zip(of_these.chunks(3)) {
@@ -225,7 +226,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     }
 }
 
-/// Of so many things.
+/// Number of pairs among `count` items.
 fn pairs(count: usize) -> usize {
     count * count.saturating_sub(1) / 2
 }
@@ -239,7 +240,7 @@ fn add<const D: usize>(to: &mut Padded<D>, block: &Block<D>) {
     }
 }
 
-/// L with D = L Lᵀ, the inverses of its diagonal entries on its diagonal.
+/// L with D = L Lᵀ; its diagonal contains the inverses of L's diagonal entries.
 #[inline(always)]
 fn cholesky<const D: usize>(block: &Padded<D>) -> Padded<D> {
     let mut factor = Padded::ZERO;
@@ -256,7 +257,7 @@ fn cholesky<const D: usize>(block: &Padded<D>) -> Padded<D> {
     factor
 }
 
-/// L⁻¹ of a block.
+/// Replaces a block by L⁻¹ times the block.
 #[inline(always)]
 fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     for row in 0..D {
@@ -270,7 +271,7 @@ fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     }
 }
 
-/// left − Σ aᵀb, for each `left` with its own b.
+/// Returns left − Σ aᵀb, for each `left` with its own b.
 #[inline(always)]
 fn less_products<const D: usize, const N: usize>(
     mut left: [Padded<D>; N],
@@ -286,7 +287,7 @@ fn less_products<const D: usize, const N: usize>(
     left
 }
 
-/// from − aᵀb.
+/// Replaces `from` by from − aᵀb.
 #[inline(always)]
 fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Padded<D>) {
     let mut result = *from;

@@ -1,9 +1,8 @@
-//! A sparse LU factorisation of D × D blocks, one row and column of blocks a body.
+//! A sparse LU factorisation of D × D blocks, one row and one column of blocks per body.
 //!
-//! The pattern is symmetric, the numbers need not be. There is no pivoting between blocks: the
-//! matrices that Newton's method factorises are masses plus contact stiffnesses, whose diagonal
-//! blocks dominate unless friction is large, and a factorisation that breaks down gives numbers that
-//! are not finite or a step that is refused.
+//! The pattern is symmetric; the numbers need not be. There is no pivoting between blocks: the matrices that Newton's
+//! method factorises are masses plus contact stiffnesses, whose diagonal blocks dominate unless friction is large. If a
+//! factorisation breaks down, its numbers are not finite or the step is refused.
 
 use super::elimination::Elimination;
 use crate::solver::kinematics::Model;
@@ -20,15 +19,15 @@ pub(crate) fn diagonal<const D: usize>(numbers: [f64; D]) -> Block<D> {
     block
 }
 
-/// The inertias of a body of that mass, kg.
+/// The inertias of a body of mass `mass`, kg.
 pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
     std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis])
 }
 
-/// A matrix, then its factors. Memory is kept between matrices.
+/// A matrix, replaced by its factors in [`BlockMatrix::factorise`]. Memory is kept between matrices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMatrix<const D: usize> {
-    /// Diagonal blocks by place; inverted by [`BlockMatrix::factorise`].
+    /// Diagonal blocks by place, inverted by [`BlockMatrix::factorise`].
     diagonal: Vec<Block<D>>,
     /// Block (b, a) for each pair a < b of neighbours, numbered as in [`Elimination::later`].
     lower: Vec<Block<D>>,
@@ -37,7 +36,7 @@ pub(crate) struct BlockMatrix<const D: usize> {
 }
 
 impl<const D: usize> BlockMatrix<D> {
-    /// A zero matrix of the given structure.
+    /// Sets the matrix to zero, with the given structure.
     pub(crate) fn clear(&mut self, elimination: &Elimination) {
         let zero = [[0.0; D]; D];
         for (blocks, count) in [
@@ -50,7 +49,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// The inertias of bodies alone, of these masses (kg).
+    /// Sets the matrix to the inertias of bodies with these masses (kg).
     pub(crate) fn start<M: Model>(&mut self, elimination: &Elimination, masses: &[f64]) {
         self.clear(elimination);
         for (&place, &mass) in elimination.place_of.iter().zip(masses) {
@@ -63,8 +62,8 @@ impl<const D: usize> BlockMatrix<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// Blocks (i, j) and (j, i) of two places that are neighbours, `number` being the index of the
-    /// later one among [`Elimination::later`].
+    /// Blocks (i, j) and (j, i) of two neighbouring places; `number` is the index of the later place in
+    /// [`Elimination::later`].
     #[inline(always)]
     pub(crate) fn off_diagonal_mut(
         &mut self,
@@ -75,7 +74,8 @@ impl<const D: usize> BlockMatrix<D> {
         if i_is_earlier { (upper, lower) } else { (lower, upper) }
     }
 
-    /// Factorises in place: L with unit diagonal below, U above, inverses of U's diagonal blocks.
+    /// Factorises in place into L below the diagonal (its own diagonal is 1), U above it, and the inverses of U's
+    /// diagonal blocks.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         let mut targets = elimination.targets.iter();
         for place in 0..self.diagonal.len() {
@@ -90,7 +90,7 @@ impl<const D: usize> BlockMatrix<D> {
                 let lower_a = self.lower[first];
                 subtract_product(&mut self.diagonal[a], &lower_a, &self.upper[first]);
                 for second in first + 1..range.end {
-                    // There is a target for every pair, in this very order.
+                    // `targets` has an entry for every pair, in this order.
                     let Some(&target) = targets.next() else { return };
                     let target = target as usize;
                     let (upper_b, lower_b) = (self.upper[second], self.lower[second]);

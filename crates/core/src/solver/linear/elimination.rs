@@ -1,41 +1,39 @@
-//! In which order bodies are eliminated, and which blocks of the factors that fills.
+//! The order in which bodies are eliminated, and the pattern of the factors that it makes.
 //!
-//! Minimum degree on the graph of contacts between grains: the body with the fewest neighbours goes
-//! first, and its neighbours become neighbours of each other. Contact graphs are nearly planar, so
-//! the neighbourhoods stay small.
+//! Minimum degree on the graph of contacts between grains: the body with the fewest neighbours is eliminated first, and
+//! its neighbours become neighbours of each other. Contact graphs are nearly planar, so the neighbourhoods stay small.
 //!
-//! **Postorder** keeps together what works on the same numbers. The parent of a place is the first of its later neighbours: the one that its elimination changes next. These are
-//! trees, and any order that has every place before its parent makes the same factors with the same fill. In one that
-//! finishes a subtree before it begins the next, what a place changes was made not long ago, and places whose
-//! neighbours are alike follow each other (J. W. H. Liu, 1990).
+//! **Postorder** keeps together the places that work on the same numbers. The parent of a place in the elimination tree
+//! is the first of its later neighbours, the one that its elimination changes next. Every order that has each place
+//! before its parent makes the same factors with the same fill. An order that finishes a subtree before it begins the
+//! next one changes blocks that were made recently, and puts places with the same later neighbours next to each other
+//! (J. W. H. Liu, 1990).
 
 use smallvec::SmallVec;
 
 use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 
-/// BodyNeighbours of a body. A disc has seldom more than six at first, and elimination seldom doubles
-/// them; more go to the heap.
+/// Neighbours of a body. A disc seldom has more than six at first, and elimination seldom doubles them; longer lists go
+/// to the heap.
 type BodyNeighbours = SmallVec<[u32; 12]>;
 
-/// An order of elimination and the structure of the factors. Bodies are called by their place in the
-/// order from here on.
+/// An elimination order and the structure of the factors. After the ordering, bodies are named by their place in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Elimination {
     /// The body at each place.
     pub body_at: Vec<u32>,
     /// The place of each body.
     pub place_of: Vec<u32>,
-    /// Place k's later neighbours are `later[starts[k] .. starts[k + 1]]`, rising; their index in
-    /// `later` numbers the blocks off the diagonal.
+    /// The later neighbours of place k are `later[starts[k] .. starts[k + 1]]`, in rising order; the index in `later`
+    /// is the number of the off-diagonal block.
     pub starts: Vec<u32>,
     /// Later neighbours, as places.
     pub later: Vec<u32>,
-    /// For each place, for each pair a < b of its later neighbours in lexicographic order: the block
-    /// of (a, b).
+    /// For each place, and each pair a < b of its later neighbours in lexicographic order: the number of block (a, b).
     pub targets: Vec<u32>,
-    /// Where the supernodes begin, and the number of places: places in a row of which each has the later neighbours of
-    /// the next one, and that one itself.
+    /// First places of the supernodes, then the number of places. A supernode is a run of places, each of which has as
+    /// later neighbours the next place and all later neighbours of the next place.
     pub supernodes: Vec<u32>,
     postorder: Postorder,
     neighbours: Vec<BodyNeighbours>,
@@ -44,7 +42,7 @@ pub(crate) struct Elimination {
 }
 
 impl Elimination {
-    /// Orders `bodies` bodies with the given pairs of neighbours (in any order, repeats allowed).
+    /// Orders `bodies` bodies with the given pairs of neighbours (in any order; repeats are allowed).
     pub(crate) fn analyse(&mut self, bodies: usize, pairs: impl Iterator<Item = (u32, u32)>) {
         self.neighbours.resize_with(bodies.max(self.neighbours.len()), BodyNeighbours::new);
         for list in &mut self.neighbours {
@@ -63,13 +61,13 @@ impl Elimination {
         self.structure(bodies);
     }
 
-    /// The block of places a < b, which must be neighbours.
+    /// Number of the block of places a < b, which must be neighbours.
     pub(crate) fn block(&self, a: u32, b: u32) -> usize {
         let row = self.row(a as usize);
         row.start + self.later[row].partition_point(|&place| place < b)
     }
 
-    /// The blocks of a place with its later neighbours.
+    /// Numbers of the blocks of a place with its later neighbours.
     #[inline(always)]
     pub(super) fn row(&self, place: usize) -> std::ops::Range<usize> {
         self.starts[place] as usize..self.starts[place + 1] as usize
@@ -87,8 +85,7 @@ impl Elimination {
         }
         let mut degree = 0;
         while self.body_at.len() < bodies {
-            // Entries that are out of date are skipped: the body is filed anew when its degree
-            // changes.
+            // Outdated entries are skipped: a body is filed again when its degree changes.
             let Some(body) = self.by_degree.get_mut(degree).and_then(Vec::pop) else {
                 degree += 1;
                 continue;
@@ -109,10 +106,10 @@ impl Elimination {
         }
     }
 
-    /// Puts the places into postorder.
+    /// Renumbers the places in postorder.
     fn rearrange(&mut self) {
         let Self { body_at, place_of, neighbours, postorder, .. } = self;
-        // What a body had as neighbours when it was eliminated comes later than it.
+        // All neighbours that a body had when it was eliminated come later.
         postorder.arrange(body_at.iter().map(|&body| {
             let later = &neighbours[body as usize];
             (later.iter().map(|&body| place_of[body as usize]).min(), later.len())
@@ -124,11 +121,11 @@ impl Elimination {
         }
     }
 
-    /// Makes `body`, a neighbour of the eliminated one, a neighbour of the rest of its clique.
+    /// Makes `body`, a neighbour of the eliminated body, a neighbour of the other bodies of the clique.
     fn join(&mut self, body: u32, eliminated: u32, clique: &[u32]) {
         let own = &mut self.neighbours[body as usize];
         self.merged.clear();
-        // Both are sorted, so a merge keeps them so.
+        // Both lists are sorted, and so is their merge.
         let (mut a, mut b) = (own.iter().copied().peekable(), clique.iter().copied().peekable());
         loop {
             let next = match (a.peek(), b.peek()) {
@@ -160,7 +157,7 @@ impl Elimination {
         self.starts.push(0);
         for place in 0..bodies {
             let start = self.later.len();
-            // What a body had as neighbours when it was eliminated comes later than it.
+            // All neighbours that a body had when it was eliminated come later.
             let neighbours = &self.neighbours[self.body_at[place] as usize];
             self.later.extend(neighbours.iter().map(|&body| self.place_of[body as usize]));
             self.later[start..].sort_unstable();
@@ -181,7 +178,7 @@ impl Elimination {
         for place in 0..bodies {
             let range = self.row(place);
             for first in range.clone() {
-                // What comes later than both is among the later neighbours of the first of them, and both lists rise.
+                // A place that is later than both is a later neighbour of the first, and both lists rise.
                 let mut block = self.starts[self.later[first] as usize] as usize;
                 for second in first + 1..range.end {
                     while self.later[block] < self.later[second] {
@@ -194,26 +191,27 @@ impl Elimination {
     }
 }
 
-/// No place, or none yet.
+/// Marks a missing place.
 const NONE: u32 = u32::MAX;
 
-/// What it takes; memory is kept between orders.
+/// Work memory of the postorder, kept between orders.
 #[derive(Clone, Debug, Default)]
 struct Postorder {
-    /// By place: a child, and the next one of the same parent.
+    /// For each place, the head of the list of its children.
     first_child: Vec<u32>,
+    /// For each place, the next child of the same parent.
     next_child: Vec<u32>,
-    /// By place: the child with the most later neighbours, which comes right before its parent.
+    /// For each place, the child with the most later neighbours, which comes right before its parent in the new order.
     heir: Vec<u32>,
-    /// By place: how many later neighbours its heir has.
+    /// For each place, the number of later neighbours of that child.
     most: Vec<usize>,
     stack: Vec<u32>,
-    /// The places in their new order, last first.
+    /// The places in their new order, in reverse.
     reversed: Vec<u32>,
 }
 
 impl Postorder {
-    /// Orders places whose parents (none: no later neighbour) and numbers of later neighbours are given.
+    /// Orders places, given the parent (`None` for a root) and the number of later neighbours of each.
     fn arrange(&mut self, parents: impl ExactSizeIterator<Item = (Option<u32>, usize)>) {
         let Self { first_child, next_child, heir, most, stack, reversed } = self;
         for links in [&mut *first_child, next_child, heir] {
@@ -236,7 +234,8 @@ impl Postorder {
                 (heir[parent], most[parent]) = (child, neighbours);
             }
         }
-        // Every place before its children, the heir first of them; and then all of it backwards.
+        // A depth-first walk visits each place before its children, and `heir` first among them. The new order is its
+        // reverse.
         while let Some(place) = stack.pop() {
             reversed.push(place);
             let heir = heir[place as usize];
@@ -254,21 +253,21 @@ impl Postorder {
     }
 }
 
-/// An order of elimination for the contacts between grains, and of these with walls that are driven, kept while these stay
-/// the same. Walls are bodies behind the grains.
+/// An elimination order for the contacts between grains and of grains with driven walls, kept while these contacts stay
+/// the same. Driven walls are numbered after the grains.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactGraph {
-    /// In which order bodies are eliminated.
+    /// The elimination order.
     pub elimination: Elimination,
-    /// The block of each row between two that can move, by the number that it has in [`Elimination::later`].
+    /// The block of each row between two bodies that can move, as an index in [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
-    /// What `elimination` was made for.
+    /// Numbers that `elimination` was made for.
     bodies: usize,
     pairs: Vec<(u32, u32)>,
 }
 
 impl ContactGraph {
-    /// Orders the elimination, unless the contacts are those of the last time.
+    /// Computes the elimination order, unless bodies and contacts are the same as last time.
     pub(crate) fn analyse<M: Model>(&mut self, problem: &StepProblem<M>) {
         let grains = problem.bodies.now.len();
         let bodies = grains + problem.walls.driven.len();

@@ -1,4 +1,4 @@
-//! Sparse systems of blocks: the order in which they are eliminated, and their factors.
+//! Sparse block systems: elimination order and factorisations.
 
 mod block_cholesky;
 mod block_lu;
@@ -10,7 +10,7 @@ pub(super) use self::elimination::{ContactGraph, Elimination};
 
 #[cfg(test)]
 mod tests {
-    /// Neighbours on a grid of so many bodies along each side.
+    /// Pairs of neighbours on a square grid with `side` bodies along each side.
     pub(super) fn grid(side: u32) -> Vec<(u32, u32)> {
         let neighbours = |k: u32| {
             let right = (k % side + 1 < side).then_some((k, k + 1));
@@ -20,7 +20,7 @@ mod tests {
         (0..side * side).flat_map(neighbours).collect()
     }
 
-    /// Numbers between −½ and ½, the same ones every time.
+    /// Pseudo-random numbers between −½ and ½, the same sequence every time.
     pub(super) fn numbers() -> impl FnMut() -> f64 {
         let mut random = 1u64;
         move || {

@@ -1,20 +1,19 @@
-//! Alternating directions of multipliers with a cached sparse factorisation (S. Boyd and others
-//! 2011; on contact problems V. Acary, M. Brémond, O. Huber 2018).
+//! Alternating directions of multipliers with a cached sparse factorisation (S. Boyd and others 2011; on contact
+//! problems V. Acary, M. Brémond, O. Huber 2018).
 //!
-//! Body velocities V and contact velocities z are two unknowns, tied by HV = z with the impulses as
-//! multipliers and a penalty m_ij/ε. In reduced impulses (`contact::law`), with u = v_n + ρ v_n^{n−1}
-//! of V, one iteration takes the impulses from V by the law,
+//! Body velocities V and contact velocities z are separate unknowns, coupled by HV = z with the impulses as multipliers
+//! and a penalty m_ij/ε. In reduced impulses (`contact::law`), with u = v_n + ρ v_n^{n−1} of V, one iteration computes
+//! the impulses from V by the law,
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±bound(σ')),
 //!
-//! sets z = u + ε (σ' − σ), and then V from the impulses, pulled towards z,
+//! sets z = u + ε (σ' − σ), and then computes V from the impulses, pulled towards z,
 //!
 //! > (M + Σ m_ij/ε (n nᵀ + m_t/m_n t tᵀ)) V = M V_free + Σ m_ij [n (2σ' − σ − c + v_n/ε) + t (…)],
 //!
-//! c the capture speed. The matrix stays while ε does, so an iteration is one pass over the contacts
-//! and one solve with factors at hand. Where it rests, V obeys the impulses and the impulses obey
-//! the law: the common natural map is 0. Penalty and law pull against each other; ε is changed where
-//! one of ε(σ' − σ) and (z' − z)/ε is much the larger.
+//! c the capture speed. The matrix depends only on ε, so an iteration is one pass over the contacts and one solve with
+//! cached factors. At a fixed point V agrees with the impulses, and the impulses with the law: the common natural map
+//! is 0. ε balances penalty and law; it is changed if one of ε(σ' − σ) and (z' − z)/ε is much larger than the other.
 
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
 use super::stopping::{SolveReport, is_tested};
@@ -24,18 +23,18 @@ use crate::solver::linear::{BlockMatrix, Elimination};
 use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
-/// ε at first.
+/// Initial ε.
 const FIRST_COMPLIANCE: f64 = 0.03;
-/// Iterations between two looks at ε: a factorisation costs as much as some ten iterations.
+/// Iterations between two checks of ε; a factorisation costs as much as about ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// How much larger one of the two residuals must be for ε to change.
+/// Minimum ratio of the two residuals for which ε is changed.
 const OUT_OF_BALANCE: f64 = 4.0;
-/// The most that ε changes at a time.
+/// Maximum factor by which ε changes at a time.
 const LARGEST_CHANGE: f64 = 10.0;
-/// Below, rounding in the factorisation tells; above, impulses hardly spread.
+/// Minimum and maximum ε. At a smaller ε rounding in the factorisation matters; at a larger ε impulses hardly spread.
 const COMPLIANCES: [f64; 2] = [1e-5, 1.0];
 
-/// The directions for each number of degrees of freedom; those that are not used hold no memory.
+/// Work memory for each number of degrees of freedom; unused entries hold no memory.
 #[derive(Debug, Default)]
 pub(crate) struct AdmmMemory {
     one: Directions<1>,
@@ -46,20 +45,20 @@ pub(crate) struct AdmmMemory {
 }
 
 impl Clone for AdmmMemory {
-    /// Nothing in them outlives a solve, so a copy of a simulation need not carry them.
+    /// Creates empty memory: its contents do not outlive a solve, so a copy of a simulation does not need them.
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-/// V and z of one solve, and the matrix that ties them.
+/// V and z of one solve, and the matrix that couples them.
 #[derive(Debug, Default)]
 struct Directions<const D: usize> {
     elimination: Elimination,
     matrix: BlockMatrix<D>,
-    /// V, or the right-hand side that it is solved from, by place in the elimination.
+    /// V, or its right-hand side before the solve, by place in the elimination order.
     vector: Vec<[f64; D]>,
-    /// z of each contact without restitution's term, m/s.
+    /// z of each contact without the restitution term, m/s.
     targets: ScaledVector,
     impulses: ScaledVector,
     before: ScaledVector,
@@ -132,7 +131,7 @@ fn run<M: Model, const D: usize>(
 }
 
 impl<const D: usize> Directions<D> {
-    /// Factorises the matrix of a compliance ε.
+    /// Factorises the matrix for a compliance ε.
     fn factorise<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, matrix, .. } = self;
         matrix.start::<M>(elimination, &problem.bodies.masses);
@@ -167,7 +166,7 @@ impl<const D: usize> Directions<D> {
         matrix.factorise(elimination);
     }
 
-    /// V and z of the present impulses.
+    /// Sets V and z from the present velocities.
     fn start<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies =
             self.elimination.body_at.iter().map(|&body| &problem.bodies.now[body as usize]);
@@ -202,14 +201,14 @@ impl<const D: usize> Directions<D> {
         velocity
     }
 
-    /// Takes the rows' impulses and z from V. Gives the factor by which ε would have to change for
-    /// the two residuals to be alike.
+    /// Computes the rows' impulses and z from V. Returns the factor by which ε would have to change to make the two
+    /// residuals equal.
     fn apply_law<M: Model>(&mut self, problem: &mut StepProblem<M>, compliance: f64) -> f64 {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);
         let law = problem.law;
         for (number, target) in targets.iter_mut().enumerate() {
-            // V knows no images, and no surfaces.
+            // V contains neither the slide of images nor the motion of surfaces.
             let is_pair = problem.rows.is_pair(number);
             let [away, along] = match is_pair {
                 true => M::slide_along(problem.rows.get(number).normal),
@@ -240,11 +239,11 @@ impl<const D: usize> Directions<D> {
         }
         self.targets = targets;
         let balance: f64 = of_impulses / of_velocities;
-        // Nothing is out of balance where nothing changes.
+        // If nothing changes, nothing is out of balance.
         if balance.is_finite() && balance > 0.0 { balance.sqrt().sqrt() } else { 1.0 }
     }
 
-    /// The right-hand side from impulses and z.
+    /// Computes the right-hand side from impulses and z.
     fn take_loads<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, vector, targets, .. } = self;
         for (place, &body) in elimination.body_at.iter().enumerate() {
@@ -277,5 +276,5 @@ impl<const D: usize> Directions<D> {
     }
 }
 
-/// How a body's coordinates enter v_n and v_t.
+/// Gradients of v_n and v_t with respect to a body's coordinates.
 type Gradients = [[f64; 3]; 2];

@@ -1,32 +1,31 @@
-//! Accelerated projected gradients with adaptive restart (H. Mazhar, T. Heyn, D. Negrut, A. Tasora,
-//! *Using Nesterov's method to accelerate multibody dynamics with friction and contact*, 2015).
+//! Accelerated projected gradients with adaptive restart (H. Mazhar, T. Heyn, D. Negrut, A. Tasora, *Using Nesterov's
+//! method to accelerate multibody dynamics with friction and contact*, 2015).
 //!
-//! With the bounds of friction held fixed (Tresca's friction) a step's impulses are a minimum of the
-//! convex f(s) = ½ s·As + b·s over a box, and Nesterov's method applies:
+//! With fixed friction bounds (Tresca) a step's impulses minimise the convex f(s) = ½ s·As + b·s over a box, and
+//! Nesterov's method applies:
 //!
 //! > x_{k+1} = projection of y_k − D w(y_k)/L,  y_{k+1} = x_{k+1} + β_k (x_{k+1} − x_k),
 //!
-//! with D = diag(1, m_t/m_n) and β_k from the recursion of Nesterov. *Coulomb's* bound depends on the
-//! solution. It is taken anew from the normal impulses of every iterate (the outer fixed point on the
-//! bound, with one inner step each), so a point where the iteration rests is a zero of the common
-//! natural map: Coulomb's law as it stands, not its convex relaxation. In exchange no theorem
-//! promises that it rests; restarts see to it in practice. To solve for each bound before the next
-//! one is taken does worse: the outer fixed point may swing up.
+//! with D = diag(1, m_t/m_n) and β_k from Nesterov's recursion. *Coulomb's* bound depends on the solution. It is
+//! recomputed from the normal impulses of every iterate (an outer fixed-point iteration on the bound, with one inner
+//! step each). So a fixed point of the iteration is a zero of the common natural map: it solves Coulomb's law itself,
+//! not its convex relaxation. In return no theorem guarantees convergence; in practice restarts achieve it. Solving for
+//! each bound before computing the next bound is worse: the outer iteration may oscillate with growing amplitude.
 //!
-//! * **L** is the largest curvature that the solve has met: a step is good if Δ·AΔ ≤ L Δ·D⁻¹Δ, else it
-//!   is done again with a larger L, up to the bound of `ContactSystem::splitting`. To let L fall
-//!   between iterations, as is often done, takes more of them.
-//! * **Restart** (B. O'Donoghue, E. Candès 2015): momentum is dropped where it leads away from where
-//!   the projected step went, (y_k − x_{k+1})·D⁻¹(x_{k+1} − x_k) > 0. The test with the gradient in
-//!   place of the projected step takes two to three times as many iterations.
-//! * w is affine, so w(y) is formed from the w(x) at hand: one product with A an iteration.
+//! * **L** is the largest curvature that the solve has met. A step is accepted if Δ·AΔ ≤ L Δ·D⁻¹Δ; otherwise it is
+//!   repeated with a larger L, up to the bound of `ContactSystem::splitting`. Letting L fall between iterations, as is
+//!   often done, takes more iterations.
+//! * **Restart** (B. O'Donoghue, E. Candès 2015): the momentum is reset if it points away from the direction of the
+//!   projected step, (y_k − x_{k+1})·D⁻¹(x_{k+1} − x_k) > 0. The test with the gradient instead of the projected step
+//!   takes two to three times as many iterations.
+//! * w is affine, so w(y) is formed from the known w(x): one product with A per iteration.
 
 use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};
 use crate::solver::settings::SolverSettings;
 
-/// L after a step that was too long, over the curvature that it met: a little more than needed, or
-/// the next step meets as much again.
+/// L after a step that was too long, divided by the curvature met there: slightly above 1, since the next step meets
+/// about the same curvature again.
 const MARGIN: f64 = 1.05;
 
 /// Solves a system from its present impulses. Every product with A counts as an iteration.
@@ -89,7 +88,7 @@ pub(super) fn solve<S: ContactSystem>(
     best.restore(system, settings.max_sweeps)
 }
 
-/// Δ·AΔ / Δ·D⁻¹Δ between two points with their w; 0 where they are the same.
+/// Δ·AΔ / Δ·D⁻¹Δ between two points with their w; 0 if they are the same.
 fn curvature<S: ContactSystem>(
     system: &S,
     [y, w_y]: [&ScaledVector; 2],

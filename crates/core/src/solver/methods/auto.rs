@@ -1,12 +1,12 @@
-//! `auto`: a method by what a step is solved under, how its solve is stopped, and how large it is.
+//! `auto`: chooses a method by the model of friction, the stopping test and the size of the problem.
 //!
-//! Convex problems (the models of friction, and grains without friction) are solved by the interior point, which solves
-//! them at any size. Under Coulomb's law Newton's method is tried first: a pile at rest takes it 2 factorisations in the
-//! median step, and 22 in the first of 10,000 grains, and sweeps do not solve such a pile if its bonds are strong. A
-//! flowing pile takes it 12 factorisations in the median at 138 grains and more than 100 at 2,000. There conjugate
-//! gradients give a smaller error for their cost, so Newton's method is given up the earlier the larger a problem is, and
-//! not tried if the pile is large and flows.
-//! A stop by the impulses of one sweep belongs to Gauss–Seidel, whose error is the subject of such a study.
+//! Convex problems (the models of friction, and grains without friction) are solved by the interior point, which works
+//! at any size. Under Coulomb's law Newton's method is tried first. A pile at rest takes 2 factorisations in the median
+//! step, and 22 in the first step of 10,000 grains; sweeps do not solve such a pile if its bonds are strong. A flowing
+//! pile takes 12 factorisations in the median at 138 grains and more than 100 at 2,000. There conjugate gradients give
+//! a smaller error at the same cost. So `auto` stops Newton's method the earlier the larger a problem is, and does not
+//! try it on a large flowing pile. A stopping test on the impulses per mass belongs to Gauss–Seidel: studies with it
+//! are about the error of that scheme.
 
 use super::newton::NewtonEffort;
 use super::{Memory, SolveReport, solve_by, wedged};
@@ -15,38 +15,41 @@ use crate::solver::method::Method;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Newton's method is given up after this number over the number of contacts, in factorisations that did not halve the
-/// residual, within [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
+/// Newton's method stops after this number divided by the number of contacts, in factorisations that have not halved
+/// the residual, limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
 ///
-/// Measured at Δt of 1e-3 s: at 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and 20 factorisations leaves an error
-/// of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in relative times of 1, 2 and 3. At 138 grains (260 contacts) and Bond 100 a patience
-/// of 20 leaves steps unsolved that one of 99 solves, and the pile slumps for it.
+/// Measured at Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and 20 factorisations leaves
+/// an error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in relative times of 1, 2 and 3. At 138 grains (260 contacts) and Bond
+/// 100, a patience of 20 does not solve steps that a patience of 99 solves, and the pile slumps because of them.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
-/// The least patience without cohesion and with it, and the most. A bond that an unsolved step breaks stays broken: a pile of 10,000 grains
-/// at Bond 100 and 5e-3 s falls with a patience of 5, which gives up its first step, and stands with 10, which solves that by 22
-/// factorisations.
+/// Minimum patience without cohesion and with cohesion. A bond that an unsolved step breaks stays broken: a pile of
+/// 10,000 grains at Bond 100 and 5e-3 s falls with a patience of 5, which does not solve the first step, and does not
+/// fall with a patience of 10, which solves that step in 22 factorisations.
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
+/// Maximum patience.
 const MOST_PATIENCE: usize = 100;
 
-/// `auto` sweeps a pile that flows from this number of contacts on. Below it Newton's method costs less for the same error.
+/// Number of contacts from which `auto` uses sweeps for a flowing pile. Below it Newton's method costs less for the
+/// same error.
 pub const CONTACTS_THAT_FLOW: usize = 500;
-/// A pile flows if more than this share of the contacts between grains slide faster than [`SLIDING_SPEED`] when its step
-/// begins. Of 2,000 standing grains none do, of 2,000 falling grains 0.08 to 0.3 after the first steps.
+/// A pile flows if more than this fraction of the contacts between grains slide faster than [`SLIDING_SPEED`] at the
+/// step's contact-free velocities. Of 2,000 grains at rest none do; of 2,000 falling grains 0.08 to 0.3 do after the
+/// first steps.
 const SLIDING_SHARE: f64 = 0.05;
-/// The speed of a sliding contact, in √(g d).
+/// Minimum speed of a sliding contact, in √(g d).
 const SLIDING_SPEED: f64 = 0.02;
 
-/// Sweeps of conjugate gradients if Newton's method did not solve a step. 200 instead of 400 leave 1.5 times the error at 2,000
-/// flowing grains, and save a tenth of the time.
+/// Sweeps of conjugate gradients after Newton's method has failed. 200 instead of 400 sweeps give 1.5 times the error
+/// at 2,000 flowing grains, and save a tenth of the time.
 const SWEEPS_AFTER: u32 = 400;
 
-/// Sweeps of conjugate gradients if a force drives a wall: 234 cohesive grains under shear leave one step in six unsolved after
-/// 5,000 of them.
+/// Sweeps of conjugate gradients if a force drives a wall. Even 5,000 sweeps do not solve one step in six of 234
+/// cohesive grains under shear.
 const SWEEPS_OF_DRIVEN: u32 = 1_000;
 
-/// The method that solves a problem under a model of friction, with friction (`rubs`) or without, with walls that a force
-/// drives or without: that of the settings, unless they leave it to `auto`.
+/// The method that solves a problem under this model of friction, with friction (`rubs`) or without, and with or
+/// without driven walls: the method of the settings, or the choice of `auto`.
 pub(crate) fn picked(
     settings: &SolverSettings,
     model: FrictionModel,
@@ -56,14 +59,14 @@ pub(crate) fn picked(
     match (settings.method, settings.stop) {
         (Method::Auto, StopTest::ImpulsePerMass) => Method::Nsgs,
         (Method::Auto, _) if model != FrictionModel::Coulomb || !rubs => Method::InteriorPoint,
-        // Newton's method does not take walls that a force drives.
+        // Newton's method does not support walls that a force drives.
         (Method::Auto, _) if is_driven => Method::Nncg,
         (Method::Auto, _) => Method::Newton,
         (method, _) => method,
     }
 }
 
-/// Solves a problem by the method that is picked for it.
+/// Solves a problem with the method that `auto` chooses for it.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut Memory,
@@ -85,7 +88,7 @@ pub(super) fn solve<M: Model>(
     solve_by(method, problem, memory, &settings, effort)
 }
 
-/// True of a large pile that flows, whose step Newton's method does not solve.
+/// Returns true for a large flowing pile, whose steps Newton's method does not solve.
 fn flows<M: Model>(problem: &StepProblem<M>) -> bool {
     if problem.rows.len() < CONTACTS_THAT_FLOW {
         return false;
@@ -96,7 +99,7 @@ fn flows<M: Model>(problem: &StepProblem<M>) -> bool {
     sliding.count() as f64 > SLIDING_SHARE * pairs.len() as f64
 }
 
-/// How long `auto` tries to solve a problem of this number of contacts, with cohesion or without.
+/// Effort that `auto` spends on a problem with this number of contacts, with or without cohesion.
 fn effort(contacts: usize, coheres: bool) -> NewtonEffort {
     let least = LEAST_PATIENCE[usize::from(coheres)];
     let patience = (PATIENCE_OF_CONTACTS / contacts.max(1)).clamp(least, MOST_PATIENCE);

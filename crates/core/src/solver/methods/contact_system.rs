@@ -1,17 +1,17 @@
-//! A contact problem as methods see it that treat all impulses as one vector.
+//! A contact problem in which all impulses form one vector, as some methods need it.
 //!
-//! **Scaled variables.** With p = P_n + C₀Δt and u_n = v_n + ρ v_n^{n−1} a step's problem is to find
-//! impulses and velocities, affine in the impulses, with
+//! **Scaled variables.** With p = P_n + C₀Δt and u_n = v_n + ρ v_n^{n−1} a step's problem is to find impulses, and
+//! velocities that are affine in the impulses, with
 //!
 //! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)).
 //!
-//! In s = (p, P_t)/√m_n and w = √m_n·(u_n, v_t) the map w(s) = A s + b has a *symmetric* positive
-//! semi-definite A (it is the Delassus operator between m_n^½ and m_n^½) with 1 on the diagonal of
-//! every normal entry and m_n/m_t on that of every tangential one, and the conditions read
+//! In s = (p, P_t)/√m_n and w = √m_n·(u_n, v_t) the map w(s) = A s + b has a *symmetric* positive semi-definite A (the
+//! Delassus operator multiplied by √m_n from both sides). Its diagonal is 1 in every normal entry and m_n/m_t in every
+//! tangential entry. The conditions become
 //!
 //! > s_n = max(0, s_n − w_n),  s_t = clamp(s_t − w_t m_t/m_n, ±bound(s_n)).
 //!
-//! Both scaled quantities have the unit √J. A method written on this trait knows nothing of bodies.
+//! Both scaled quantities have the unit √J. A method written for this trait does not use bodies.
 
 use super::pass::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
@@ -24,46 +24,45 @@ use crate::world::FrictionCone;
 /// Scaled impulses or velocities of all contacts: (normal, tangential) each, √J.
 pub type ScaledVector = Vec<[f64; 2]>;
 
-/// What a method works with. Memory is kept between steps, contents are not.
+/// Work memory of a method. The memory is kept between steps, its contents are not.
 #[derive(Debug, Default)]
 pub(crate) struct WorkVectors {
-    /// As many vectors as the hungriest method needs.
+    /// Scaled vectors, as many as any method needs.
     pub pairs: [ScaledVector; 8],
-    /// One number a contact.
+    /// One number per contact.
     pub weights: Vec<f64>,
 }
 
 impl Clone for WorkVectors {
-    /// Nothing in them outlives a solve, so a copy of a simulation need not carry them.
+    /// Creates empty vectors: their contents do not outlive a solve, so a copy of a simulation does not need them.
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-/// One step's contact problem in scaled variables (see the module). `contact` is an index below
-/// [`ContactSystem::len`].
+/// One step's contact problem in scaled variables (see the module). `contact` is an index below [`ContactSystem::len`].
 pub trait ContactSystem {
-    /// True where contacts carry tangential impulses. Where they do not, tangential entries are 0.
+    /// True if contacts carry tangential impulses. If not, tangential entries are 0.
     const FRICTION: bool;
 
     /// Number of contacts.
     fn len(&self) -> usize;
 
-    /// True where there is no contact.
+    /// Returns true if there are no contacts.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The present impulses s; `impulses` is cleared first.
+    /// Reads the present impulses s. Clears `impulses` first.
     fn read(&self, impulses: &mut ScaledVector);
 
-    /// Takes impulses, of any sign and size, and forms the velocities that they make.
+    /// Sets the impulses, which may have any sign and size, and forms the velocities that they make.
     fn write(&mut self, impulses: &[[f64; 2]]);
 
-    /// w of the present velocities; `velocities` is cleared first.
+    /// Reads the scaled velocities w. Clears `velocities` first.
     fn velocities(&self, velocities: &mut ScaledVector);
 
-    /// m_n/m_t: the tangential entry on the diagonal of A, where the normal one is 1.
+    /// m_n/m_t: the tangential entries on the diagonal of A; the normal entries are 1.
     fn tangential_diagonal(&self, contact: usize) -> f64;
 
     /// μ of a contact.
@@ -72,32 +71,31 @@ pub trait ContactSystem {
     /// The largest |s_t| that a normal impulse s_n ≥ 0 allows.
     fn friction_bound(&self, contact: usize, normal: f64) -> f64;
 
-    /// A number d > 0 a contact such that A ⪯ D⁻¹, where D has the entries (d, d m_t/m_n): with it a
-    /// projected step s − D w of all contacts at once cannot diverge. `weights` is cleared first.
+    /// Computes a number d > 0 per contact such that A ⪯ D⁻¹, where D has the entries (d, d m_t/m_n). With this D a
+    /// projected step s − D w of all contacts at once cannot diverge. Clears `weights` first.
     fn splitting(&self, weights: &mut Vec<f64>);
 
-    /// One Gauss–Seidel sweep from the present impulses. Leaves impulses that the laws allow.
+    /// Makes one Gauss–Seidel sweep from the present impulses. The resulting impulses satisfy the bounds of the laws.
     fn sweep(&mut self);
 
-    /// A sweep, and whether the stopping test is met after it.
+    /// Makes a sweep. Returns true if the stopping test is met after it.
     fn tested_sweep(&mut self, settings: &SolverSettings) -> bool;
 
     /// The common residual of the present impulses.
     fn residual(&self) -> f64;
 
-    /// True where the stopping test is met by an iteration that led from the impulses `before` to the
-    /// present ones.
+    /// Returns true if the stopping test is met by an iteration from the impulses `before` to the present impulses.
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
 }
 
-/// The problem of a step: impulses move bodies, and A is never formed.
+/// The problem of a step as a contact system. Impulses move bodies; A is never formed.
 #[derive(Debug)]
 pub struct BodySystem<'a, M: Model> {
     problem: &'a mut StepProblem<M>,
 }
 
 impl<'a, M: Model> BodySystem<'a, M> {
-    /// Contacts are numbered as the rows: those with fixed bodies first.
+    /// Creates the system of a problem. Contacts are numbered like the rows: contacts with fixed bodies come first.
     pub fn new(problem: &'a mut StepProblem<M>) -> Self {
         let StepProblem { rows, root_masses, .. } = &mut *problem;
         root_masses.clear();
@@ -110,7 +108,7 @@ impl<'a, M: Model> BodySystem<'a, M> {
         self.problem.root_masses[contact]
     }
 
-    /// Rows with √m_n, kg^½.
+    /// Rows, each with √m_n, kg^½.
     fn rows(&self) -> impl Iterator<Item = (&Row<M>, &f64)> {
         self.problem.rows.iter().zip(&self.problem.root_masses)
     }
@@ -174,17 +172,16 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         }
     }
 
-    /// Mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a body with k contacts is cut
-    /// into k parts of 1/k of its mass and inertia, one a contact. By Cauchy–Schwarz the parts,
-    /// moved each on its own, answer at least as much as the body does: A ⪯ D⁻¹. For the contact's
-    /// own diagonal, 1/m_i becomes k_i/m_i, and with g_i = m_ij/m_i
+    /// Mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a body with k contacts is cut into k parts of
+    /// 1/k of its mass and inertia, one per contact. By Cauchy–Schwarz the separate parts respond at least as much as
+    /// the body does: A ⪯ D⁻¹. In the contact's own diagonal entry 1/m_i becomes k_i/m_i, and with g_i = m_ij/m_i
     ///
     /// > 1/d = k_i g_i + k_j (1 − g_i), against a fixed body k_i,
     ///
-    /// and k_i + k κ(b_n² + b_t² m_t/m_n) against a wall with k contacts that is driven (`problem::walls`).
+    /// and k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts (`problem::walls`).
     fn splitting(&self, weights: &mut Vec<f64>) {
         let ContactRows { fixed, pairs, .. } = &self.problem.rows;
-        // Counts come first in the same memory, one a body.
+        // The first entries of `weights` temporarily contain the number of contacts of each body.
         let count = self.problem.bodies.now.len();
         weights.clear();
         weights.resize(count, 0.0);
@@ -222,7 +219,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             return is_solved(self.problem, settings);
         }
         let tolerance = settings.tolerance;
-        // Impulses in N·s, and without the shift.
+        // Impulses in N·s, without the shift.
         let (mut squared, mut absolute, mut whole) = (0.0, 0.0, 0.0);
         for ((number, (row, root)), [normal, tangential]) in self.rows().enumerate().zip(before) {
             let mass = row.effective_mass;
@@ -241,17 +238,17 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             StopTest::ImpulsePerMass => absolute <= tolerance * self.problem.bodies.mean_mass,
             _ => squared <= tolerance * tolerance * whole,
         };
-        // Impulses may rest where nothing is solved, and then go on.
+        // Impulses may stop changing for a while although nothing is solved.
         rests && is_solved(self.problem, settings)
     }
 }
 
-/// Iterations between two looks at the residual, where the stopping test does not ask for it. More
-/// often costs more; less often, and a better iterate may be missed when a solve fails.
+/// Iterations between two checks of the residual, if the stopping test does not compute it. A shorter interval costs
+/// more; a longer one may miss a better iterate of a solve that fails.
 const LOOK_INTERVAL: u32 = 16;
 
-/// What the contact laws make of impulses that a step has led to: the nearest normal impulse that
-/// is allowed, then the nearest tangential one that this allows.
+/// Projects trial impulses on the contact laws: the nearest allowed normal impulse, then the nearest tangential impulse
+/// that this normal impulse allows.
 #[inline(always)]
 pub(crate) fn projected<S: ContactSystem>(
     system: &S,
@@ -265,7 +262,7 @@ pub(crate) fn projected<S: ContactSystem>(
     [normal, law::coulomb(tangential, system.friction_bound(contact, normal))]
 }
 
-/// Σ a·b, in four sums that do not wait for each other.
+/// Σ a·b, in four sums that do not depend on each other.
 pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     let mut sums = [0.0; 4];
     let (mut pairs_of_a, mut pairs_of_b) = (a.chunks_exact(2), b.chunks_exact(2));
@@ -282,7 +279,7 @@ pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The impulses of the smallest residual seen so far.
+/// Keeps the impulses with the smallest residual so far.
 pub(crate) struct BestIterate<'a> {
     impulses: &'a mut ScaledVector,
     residual: f64,
@@ -296,8 +293,8 @@ impl<'a> BestIterate<'a> {
         Self { impulses, residual: system.residual(), watch: StallWatch::default() }
     }
 
-    /// Looks at `impulses`, which are the system's present ones, after iteration `sweeps`; now and
-    /// then only. Tells whether to stop, since nothing better is to be had.
+    /// Checks the residual of `impulses`, the present impulses of the system, after iteration `sweeps`, once every
+    /// [`LOOK_INTERVAL`] iterations. Returns true if the solve should stop.
     pub(crate) fn look<S: ContactSystem>(
         &mut self,
         system: &S,
@@ -317,11 +314,10 @@ impl<'a> BestIterate<'a> {
         self.watch.look(sweeps, settings, || self.residual)
     }
 
-    /// The end of a solve that failed: the system has the best impulses of all, its present ones
-    /// included.
+    /// Ends a solve that failed: gives the system the best impulses, which may be its present ones.
     pub(crate) fn restore<S: ContactSystem>(self, system: &mut S, sweeps: u32) -> SolveReport {
         let residual = system.residual();
-        // Not a number is not better than anything.
+        // NaN compares false, so it counts as worse.
         let present_is_best = residual <= self.residual;
         if !present_is_best {
             system.write(self.impulses);

@@ -1,17 +1,15 @@
-//! Jacobi with mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov, *Mass splitting for
-//! jitter-free parallel rigid body simulation*, 2012): all contacts at once, each as if it had its
-//! grains' parts to itself.
+//! Jacobi with mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov, *Mass splitting for jitter-free parallel rigid
+//! body simulation*, 2012): all contacts at once, each with its own part of its grains.
 //!
-//! A grain with k contacts is cut into k parts of 1/k of its mass and inertia, one a contact; each
-//! contact is solved exactly with its two parts, and the parts of a grain then share the mean of
-//! their velocities. The mean of the parts moves as the whole grain does under all the impulses, so
-//! no part is ever stored: one iteration is, with the split contact's inverse mass 1/(d m_n)
-//! (`ContactSystem::splitting`),
+//! A grain with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. Each contact is solved
+//! exactly with its two parts; then the velocities of a grain's parts are replaced by their mean. The mean moves like
+//! the whole grain under all impulses, so parts are never stored: with 1/(d m_n), the inverse mass of the split contact
+//! (`ContactSystem::splitting`), one iteration is
 //!
 //! > s ← projection of s − D w(s),
 //!
-//! a projected gradient step whose D is small enough for any pile. Impulses spread by one contact an
-//! iteration and are weakened by k, so it takes many; but no order of contacts enters.
+//! a projected gradient step whose D is small enough for any pile. Impulses spread by one contact per iteration and are
+//! reduced by k, so many iterations are needed; but the result does not depend on an order of contacts.
 
 use super::contact_system::{BestIterate, ContactSystem, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};

@@ -1,4 +1,4 @@
-//! What solves a step's problem: a file or folder a method. `method` says what there is to know of each.
+//! The methods that solve a step's problem, one file or folder each. `method` lists their properties.
 
 mod admm;
 mod apgd;
@@ -34,7 +34,7 @@ use super::method::Method;
 use super::problem::StepProblem;
 use super::settings::{FrictionModel, SolverSettings};
 
-/// What the methods keep from one solve to the next. Results do not depend on it.
+/// Memory of the methods from one solve to the next. Results do not depend on it.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
     nsgs_parallel: nsgs_parallel::BlockMemory,
@@ -56,7 +56,7 @@ pub(super) fn solve_by_method<M: Model>(
     }
 }
 
-/// Solves with a method that need not be that of the settings.
+/// Solves with `method`, which may differ from the method of the settings.
 fn solve_by<M: Model>(
     method: Method,
     problem: &mut StepProblem<M>,
@@ -75,7 +75,7 @@ fn solve_by<M: Model>(
                 && problem.law.friction == 0.0
                 && problem.friction.model == FrictionModel::Coulomb =>
         {
-            // Within bounds of 0 the problem is convex, and it is the law's own.
+            // With friction bounds of 0 the problem is convex, and its solution is that of Coulomb's law.
             problem.begin_friction(FrictionModel::Tresca);
             let report =
                 interior_point::solve(problem, path, settings, |_, _| SolveReport::default());
@@ -83,7 +83,7 @@ fn solve_by<M: Model>(
             report
         }
         Method::InteriorPoint => interior_point::solve(problem, path, settings, |problem, rest| {
-            // Newton's method does not take walls that a force drives.
+            // Newton's method does not support walls that a force drives.
             match problem.is_driven() {
                 true => nncg::solve(&mut BodySystem::new(problem), rest, vectors),
                 false => newton::solve(problem, newton, vectors, rest, NewtonEffort::FULL),
@@ -95,8 +95,8 @@ fn solve_by<M: Model>(
     }
 }
 
-/// Solves any contact system, from its present impulses, with the method of the settings. Gives
-/// nothing where that method needs bodies.
+/// Solves any contact system from its present impulses with the method of the settings. Returns `None` if that method
+/// needs bodies.
 pub(crate) fn solve_system<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,

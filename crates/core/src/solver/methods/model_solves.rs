@@ -1,4 +1,4 @@
-//! The outer loop of models of friction that lag (`problem::friction`), the same for all methods.
+//! The outer loop of models of friction with lagged numbers (`problem::friction`), the same for all methods.
 
 use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;
@@ -6,13 +6,14 @@ use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
-/// Sweeps under Coulomb's law that the first bounds of friction are taken from, and how many of them a step is given
-/// first, which may be solved then: most of a pile at rest are. Fewer: what they are taken from is further from Coulomb's
-/// law, at 2,000 grains more than what a first solve leads to; more: the sweeps cost more than the second solve that they save.
+/// Coulomb sweeps used to estimate the friction bounds, in two stages. The step is tested after each stage; most steps
+/// of a pile at rest are solved after the first. With fewer sweeps the bounds come from a state that is further from
+/// Coulomb's law, at 2,000 grains further than the result of a first solve. More sweeps cost more than the second solve
+/// they save.
 const SWEEPS_FOR_BOUNDS: [u32; 2] = [4, 46];
 
-/// Solves a problem by `solve_once` as often as the settings ask for, the lagged numbers of its model of friction
-/// taken anew each time. The step is solved where the last solve is: those before it only say what lags.
+/// Solves a problem with `solve_once` as often as the settings ask for, with the lagged numbers recomputed before each
+/// further solve. The step is solved if the last solve is; earlier solves only provide the lagged numbers.
 pub(super) fn solve_models<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -34,7 +35,7 @@ pub(super) fn solve_models<M: Model>(
     report
 }
 
-/// Sweeps under Coulomb's law, and takes the bounds of what that leads to.
+/// Sweeps under Coulomb's law, and computes the friction bounds from the result.
 fn take_bounds_from_sweeps<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,

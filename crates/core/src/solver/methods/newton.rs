@@ -1,29 +1,31 @@
 //! Semi-smooth Newton in body-velocity space, with a sparse direct factorisation.
 //!
-//! The contact law is a fixed point of projections (`contact::law`). Regularised with a compliance ε
-//! it reads, per contact and in reduced impulses,
+//! The contact law is a fixed point of projections (`contact::law`). Regularised with a compliance ε it becomes, per
+//! contact and in reduced impulses,
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±μσ'),
 //!
-//! u = v_n + ρ v_n^{n−1}, with the velocities at the *end* of the Newton step. Whether a contact is
-//! open, sticks or slips is guessed from the present state; each guess makes the law linear, so that
-//! impulses can be eliminated and velocities V remain:
+//! u = v_n + ρ v_n^{n−1}, with the velocities at the *end* of the Newton step. The present state gives a guess for each
+//! contact: open, stick or slip. Each guess makes the law linear, so impulses can be eliminated and velocities V
+//! remain:
 //!
 //! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],  c the capture speed,
 //!
-//! one sparse system with a D × D block a body: masses plus contact stiffnesses m_ij/ε. A slipping
-//! contact, λ_t' = ±μσ', brings the unsymmetric n + (±μ) t. The exact solution is a fixed point for
-//! any ε: a small one converges in few steps, a larger one is more robust where guesses flip.
-//! After each step the impulses are projected on what the law allows, velocities are formed
-//! anew from them, and a few Gauss–Seidel sweeps mend what the guesses got wrong. After some factorisations
-//! the contacts that hold most of the residual are solved alone, too (`nonlinear_elimination`).
+//! one sparse system with a D × D block per body: masses plus contact stiffnesses m_ij/ε. A slipping contact,
+//! λ_t' = ±μσ', adds the unsymmetric n + (±μ) t. The exact solution is a fixed point for any ε: a small ε converges in
+//! few steps, a larger ε is more robust if guesses keep changing. After each step
 //!
-//! What is solved for is the *change* of the velocities, with the change of the impulses at rest as
-//! the load. Solved for the velocities themselves, rounding would leave an error of V·10⁻¹⁶ in them
-//! and, times the stiffness 1/ε twice, stall the residual of a fast pile at 10⁻⁴ … 10⁻⁷.
+//! 1. the impulses are projected on the law, and the velocities are formed from them;
+//! 2. a few Gauss–Seidel sweeps correct wrong guesses;
+//! 3. after the first factorisations, the contacts with most of the residual are also solved separately
+//!    (`nonlinear_elimination`).
 //!
-//! The method is that of an augmented Lagrangian treated by generalised Newton steps (P. Alart,
-//! A. Curnier 1991), with ε adapted as in a trust region.
+//! The unknown is the *change* of the velocities, and the load is the change of the impulses at the present velocities.
+//! If the velocities themselves were the unknown, rounding would leave an error of V·10⁻¹⁶ in them. Multiplied by the
+//! stiffness 1/ε twice, it would stall the residual of a fast pile at 10⁻⁴ … 10⁻⁷.
+//!
+//! The method is an augmented Lagrangian with generalised Newton steps (P. Alart, A. Curnier 1991), with ε adapted as
+//! in a trust region.
 
 use super::contact_system::{BodySystem, WorkVectors};
 use super::nncg;
@@ -39,47 +41,48 @@ use crate::solver::settings::SolverSettings;
 
 /// Compliance of the first step.
 const FIRST_COMPLIANCE: f64 = 1e-7;
-/// Below this, rounding in the factorisation eats what a smaller compliance would gain.
+/// At a smaller compliance, rounding in the factorisation cancels the gain.
 const SMALLEST_COMPLIANCE: f64 = 1e-7;
-/// Above this a Newton step is no better than sweeps, which then take over for a while.
+/// At a larger compliance a Newton step is no better than sweeps, which then take over for a while.
 const LARGEST_COMPLIANCE: f64 = 0.1;
-/// Factor of the compliance after a step that is accepted.
+/// Factor of the compliance after an accepted step.
 const AFTER_SUCCESS: f64 = 0.2;
-/// Factor of the compliance after a step that is refused.
+/// Factor of the compliance after a rejected step.
 const AFTER_FAILURE: f64 = 10.0;
 /// Sweeps before the first factorisation: many steps of a pile at rest need no more.
 const SWEEPS_FIRST: u32 = 4;
-/// Sweeps after each factorisation: they mend what the guesses got wrong, at a fraction of its cost.
+/// Sweeps after each factorisation: they correct wrong guesses at a fraction of its cost.
 const SWEEPS_AFTER: u32 = 4;
-/// Sweeps where Newton stalls, doubled each time up to [`MOST_SWEEPS_BETWEEN`].
+/// Sweeps if Newton's method stalls, doubled each time up to [`MOST_SWEEPS_BETWEEN`].
 const SWEEPS_BETWEEN: u32 = 20;
 const MOST_SWEEPS_BETWEEN: u32 = 200;
-/// Factorisations before contacts are solved alone, too: from the first on it doubles the time of easy steps, which end
-/// before. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339 are left without elimination in 60 s, and 878, 961, 875, 893
-/// and 921 with it after 0, 4, 8, 16 and 32 in 136, 124, 121, 120 and 100 s.
+/// Factorisations before contacts are also solved separately. If that starts with the first one, easy steps, which end
+/// before, take twice as long. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339 are unsolved without elimination in
+/// 60 s, and 878, 961, 875, 893 and 921 with it after 0, 4, 8, 16 and 32 factorisations in 136, 124, 121, 120 and 100
+/// s.
 const FACTORISATIONS_FIRST: u32 = 8;
 
-/// How long Newton's method is tried, and how long conjugate gradients after it.
+/// Limits of Newton's method and of the conjugate gradients after it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewtonEffort {
-    /// Factorisations without halving the best residual after which the method is given up.
+    /// Newton's method stops after this many factorisations that have not halved the best residual.
     pub patience: u32,
-    /// Sweeps of conjugate gradients after that, within the limit of the settings.
+    /// Sweeps of conjugate gradients after Newton's method, within the limit of the settings.
     pub sweeps_after: u32,
 }
 
 impl NewtonEffort {
-    /// As far as the limit of the settings goes.
+    /// Effort up to the limit of the settings.
     pub(super) const FULL: Self = Self { patience: 100, sweeps_after: u32::MAX };
 }
 
-/// A step is accepted if its residual is below [`ENOUGH`] times the largest of this many before:
-/// the residual may rise for a few steps on the way down. With 1, steps are refused that lead on;
-/// with 15, many are taken that lead nowhere.
+/// A step is accepted if its residual is below [`ENOUGH`] times the largest of this many previous residuals: the
+/// residual may rise for a few steps on the way down. With 1, useful steps are rejected; with 15, many useless steps
+/// are accepted.
 const HISTORY: usize = 6;
 const ENOUGH: f64 = 0.99;
 
-/// A workspace for each number of degrees of freedom; those that are not used hold no memory.
+/// One workspace for each number of degrees of freedom; unused ones hold no memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NewtonMemory {
     one: NewtonWorkspace<1>,
@@ -87,7 +90,7 @@ pub(crate) struct NewtonMemory {
     three: NewtonWorkspace<3>,
 }
 
-/// What is kept where a body has `D` degrees of freedom.
+/// Work memory for bodies with `D` degrees of freedom.
 #[derive(Clone, Debug, Default)]
 struct NewtonWorkspace<const D: usize> {
     graph: ContactGraph,
@@ -95,18 +98,18 @@ struct NewtonWorkspace<const D: usize> {
     vector: Vec<[f64; D]>,
     guesses: Vec<Guess>,
     alone: NonlinearElimination,
-    /// (σ, λ_t) of the rows to go back to.
+    /// (σ, λ_t) of the rows at the last accepted state.
     saved: Vec<[f64; 2]>,
     /// (σ, λ_t) of the smallest residual so far.
     best: Vec<[f64; 2]>,
 }
 
-/// What the present state lets one guess of a contact.
+/// Guess of a contact's state, made from the present impulses and velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Guess {
     Open,
     Stick,
-    /// The tangential impulse is at its bound, with this sign; 0 where the bound itself is 0.
+    /// The tangential impulse is at its bound, with this sign; 0 if the bound itself is 0.
     Slip(f64),
 }
 
@@ -130,7 +133,7 @@ struct Newton<'a, M: Model, const D: usize> {
     settings: &'a SolverSettings,
     effort: NewtonEffort,
     workspace: &'a mut NewtonWorkspace<D>,
-    /// Of the conjugate gradients that go on where Newton's method leads nowhere.
+    /// Work memory of the conjugate gradients that follow if Newton's method fails.
     vectors: &'a mut WorkVectors,
 }
 
@@ -166,7 +169,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             }
             let mut now = residual(self.problem);
             history.since_milestone += 1;
-            // Not a number is not below anything.
+            // NaN compares false, so the step is rejected.
             if now < history.bound() {
                 compliance = (compliance * AFTER_SUCCESS).max(SMALLEST_COMPLIANCE);
             } else {
@@ -192,13 +195,13 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.go_on_without(report)
     }
 
-    /// Sweeps up to so many times. True where the stopping test is met.
+    /// Makes up to `sweeps` sweeps. Returns true if the stopping test is met.
     fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
         settles_in(self.problem, self.settings, sweeps, report)
     }
 
-    /// If Newton's method gets no further, conjugate gradients use the sweeps that are left: they solve some of the
-    /// problems that it cannot solve, and they show if a problem has no solution.
+    /// Uses the remaining sweeps for conjugate gradients after Newton's method has failed. They solve some of the
+    /// problems that it cannot solve, and they show whether a problem has no solution.
     fn go_on_without(self, report: SolveReport) -> SolveReport {
         let left = (self.settings.max_sweeps - report.sweeps).min(self.effort.sweeps_after);
         if left == 0 {
@@ -213,7 +216,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         }
     }
 
-    /// Guesses, solves for velocities, and takes the impulses that go with them.
+    /// Guesses the states, solves for the velocities, and sets the impulses that go with them.
     fn newton_step(&mut self, compliance: f64) {
         assemble::<M, D>(self.problem, self.workspace, compliance);
         let NewtonWorkspace { graph, matrix, vector, .. } = &mut *self.workspace;
@@ -223,7 +226,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.problem.form_velocities();
     }
 
-    /// The regularised law at the new velocities, projected on what the law allows.
+    /// Sets the impulses to the regularised law at the new velocities, projected on the law.
     fn take_impulses(&mut self, compliance: f64) {
         let NewtonWorkspace { graph, vector, guesses, .. } = &*self.workspace;
         let places = &graph.elimination.place_of;
@@ -268,7 +271,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
     }
 }
 
-/// Guesses what every contact does, and sets up the equations of the velocities that follow.
+/// Guesses the state of every contact, and assembles the resulting equations for the velocities.
 fn assemble<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     workspace: &mut NewtonWorkspace<D>,
@@ -311,7 +314,7 @@ fn assemble<M: Model, const D: usize>(
     }
 }
 
-/// What a contact would do next, by its law.
+/// The next state of a contact according to its law.
 fn guess<M: Model>(
     problem: &StepProblem<M>,
     row: &Row<M>,
@@ -330,17 +333,17 @@ fn guess<M: Model>(
     if tangential.abs() <= bound { Guess::Stick } else { Guess::Slip(tangential.signum()) }
 }
 
-/// A contact's part in the equations of one of its bodies.
+/// Contribution of a contact to the equations of one of its bodies.
 struct Terms<const D: usize> {
-    /// How the body's velocity enters v_n and v_t.
+    /// Gradients of v_n and v_t with respect to the body's velocity.
     normal: [f64; D],
     tangent: [f64; D],
-    /// Where the law's answer to v_n acts: n, or n ± μt in slip.
+    /// Direction of the impulse that responds to v_n: n, or n ± μt in slip.
     answer: [f64; D],
-    /// Stiffnesses against v_n and v_t, kg.
+    /// Stiffnesses of the response to v_n and v_t, kg.
     normal_stiffness: f64,
     tangential_stiffness: f64,
-    /// What the impulse changes by at the present velocities, kg·m/s.
+    /// Change of the impulse at the present velocities, kg·m/s.
     load: [f64; D],
 }
 
@@ -386,7 +389,7 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds the answer of this body's equations to the velocity of `other` to their block.
+    /// Adds to `block` the stiffness that couples this body's equations to the velocity of `other`.
     #[inline(always)]
     fn add(&self, block: &mut [[f64; D]; D], other: &Self) {
         for (row, entries) in block.iter_mut().enumerate() {
@@ -406,16 +409,16 @@ impl<const D: usize> Terms<D> {
     }
 }
 
-/// How the residual has come down.
+/// History of the residual during a solve.
 struct ResidualHistory {
     /// Residuals of the last accepted steps.
     history: [f64; HISTORY],
     accepted: usize,
     best: f64,
-    /// The last best residual that was half of the milestone before: creeping down does not count as
+    /// The last best residual that was below half of the milestone before it, so that a slow decrease does not count as
     /// progress.
     milestone: f64,
-    /// Steps since then.
+    /// Factorisations since the milestone.
     since_milestone: u32,
 }
 
@@ -426,12 +429,12 @@ impl ResidualHistory {
         Self { history, accepted: 0, best: residual, milestone: residual, since_milestone: 0 }
     }
 
-    /// The residual that a step has to be below.
+    /// A step must have a residual below this bound.
     fn bound(&self) -> f64 {
         ENOUGH * self.history.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Accepts a state of that residual; whether it is the best.
+    /// Accepts a state with this residual. Returns true if it is the best.
     fn accept(&mut self, residual: f64) -> bool {
         self.accepted += 1;
         self.history[self.accepted % HISTORY] = residual;

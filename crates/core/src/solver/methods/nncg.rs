@@ -1,15 +1,15 @@
-//! Non-smooth non-linear conjugate gradients (M. Silcowitz, S. Niebe, K. Erleben, *A nonsmooth
-//! nonlinear conjugate gradient method for interactive contact force problems*, 2010).
+//! Non-smooth non-linear conjugate gradients (M. Silcowitz, S. Niebe, K. Erleben, *A nonsmooth nonlinear conjugate
+//! gradient method for interactive contact force problems*, 2010).
 //!
-//! A Gauss–Seidel sweep G leads from impulses s to G(s), and leaves a solution where it is. Read as
-//! the step of a descent, r = G(s) − s is a preconditioned negative gradient, and two sweeps can be
-//! combined as the Fletcher–Reeves method combines gradients:
+//! A Gauss–Seidel sweep G maps impulses s to G(s), and its fixed points are solutions. If the sweep is read as a
+//! descent step, r = G(s) − s is a preconditioned negative gradient, and two sweeps can be combined as the
+//! Fletcher–Reeves method combines gradients:
 //!
 //! > r_k = G(s_k) − s_k,  β = ‖r_k‖²/‖r_{k−1}‖²,  s_{k+1} = G(s_k) + β p_{k−1},  p_k = r_k + β p_{k−1}.
 //!
-//! Where the gradient has grown (β > 1) the direction is forgotten and the plain sweep is kept. The
-//! sweep solves Coulomb's law as it stands, so the method does too; what leaves the cone by
-//! extrapolation is brought back by the next sweep, and the result is always a sweep's.
+//! If the gradient has grown (β > 1), the direction is reset and the plain sweep is kept. The sweep solves Coulomb's
+//! law itself, and so does the method. Impulses that leave the cone by extrapolation are projected by the next sweep,
+//! and the result is always that of a sweep.
 
 use super::contact_system::{BestIterate, ContactSystem, WorkVectors, dot};
 use super::stopping::{SolveReport, is_tested};
@@ -43,7 +43,7 @@ pub(super) fn solve<S: ContactSystem>(
             swept.iter().zip(&*impulses).map(|(now, old)| [now[0] - old[0], now[1] - old[1]]),
         );
         let squared = dot(step, step);
-        // Not a number is not below anything.
+        // NaN compares false, so it does not extrapolate.
         let factor = squared / squared_before;
         let extrapolates = factor <= 1.0 && sweeps < settings.max_sweeps;
         squared_before = squared;

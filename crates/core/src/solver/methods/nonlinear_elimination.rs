@@ -1,41 +1,42 @@
-//! Non-linear elimination: before the next linearisation, the few contacts that hold most of the residual are solved
-//! alone, with the rest of the pile as it stands (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
+//! Non-linear elimination: before the next linearisation, the few contacts with most of the residual are solved
+//! separately, with the rest of the pile fixed (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
 //!
-//! That is kept where it brings the residual of the whole pile down. In a box that is too full, contacts that are solved
-//! alone push each other ever harder, and without that condition discs went on at 7 √(g d).
+//! The result is kept only if it reduces the residual of the whole pile. In an overfull box, contacts that are solved
+//! separately push each other harder and harder; without this condition discs kept moving at 7 √(g d).
 //!
-//! Where a few contacts change between sticking, sliding and opening, they hold a Newton step short for all the others.
-//! Of 300 steps of 2,000 grains in collapse, solved to 1e-3 under Coulomb's law, 0, 11 and 22 are left at Bond 0, 20 and
-//! 50 without elimination, and 0, 6 and 15 with it, in 1.4 times the time.
+//! A few contacts that change between sticking, sliding and opening make a Newton step short for all the others. Of 300
+//! steps of 2,000 collapsing grains, solved to 1e-3 under Coulomb's law, 0, 11 and 22 are unsolved at Bond 0, 20 and 50
+//! without elimination, and 0, 6 and 15 with it, in 1.4 times the time.
 
 use super::sweep::ImpulseChange;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{CoulombFriction, FrictionProjection, StepProblem, errors, residual};
 
-/// Share of the squared residual that is held by the contacts that are solved alone.
+/// Fraction of the squared residual that the selected contacts have together.
 const HELD: f64 = 0.9;
-/// Sweeps over them. Of 21,600 steps of 138 grains, solved to 1e-6 with elimination from the first factorisation on, 1,339
-/// are left without any, 1,152 with 30, 878 with 100 and 759 with 300, in 1, 1.5, 2.1 and 3.9 times the time.
+/// Sweeps over the selected contacts. Of 21,600 steps of 138 grains, solved to 1e-6 with elimination from the first
+/// factorisation on, 1,339 are unsolved with no such sweeps, 1,152 with 30, 878 with 100 and 759 with 300, in 1, 1.5,
+/// 2.1 and 3.9 times the time.
 const SWEEPS: u32 = 100;
 
-/// Which contacts are solved alone; only its memory is kept.
+/// The contacts that are solved separately. Only its memory is kept between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NonlinearElimination {
-    /// Squared residual by row, (N·s)², and the rows with the largest first.
+    /// Squared residual of each row, (N·s)², and the numbers of the rows from the largest to the smallest.
     squares: Vec<f64>,
     by_square: Vec<usize>,
-    /// By body: at one of those contacts; at one of them or beside it.
+    /// For each body: true if it has a selected contact; below, true if it has one or touches such a body.
     at: Vec<bool>,
     around: Vec<bool>,
     fixed: Vec<usize>,
     pairs: Vec<usize>,
-    /// (σ, λ_t) of the rows as it began.
+    /// (σ, λ_t) of the rows before the elimination.
     saved: Vec<[f64; 2]>,
 }
 
 impl NonlinearElimination {
-    /// Solves the contacts of the bodies at, and beside, those that hold the residual, under Coulomb's law. These are
-    /// sweeps of a part, and no report counts them.
+    /// Solves under Coulomb's law all contacts of the bodies with most of the residual and of their neighbours. Reports
+    /// do not count these sweeps, which cover only a part of the pile.
     pub(super) fn apply<M: Model>(&mut self, problem: &mut StepProblem<M>) {
         let before = residual(problem);
         problem.rows.read_impulses(&mut self.saved);
@@ -51,7 +52,7 @@ impl NonlinearElimination {
                 rows.pairs[number].solve::<false>(&mut bodies.now, &mut change, project);
             }
         }
-        // Not a number is not below anything.
+        // NaN compares false, so it counts as no progress.
         let is_better = residual(problem) < before;
         if !is_better {
             problem.write_impulses(self.saved.iter().copied());
@@ -120,7 +121,8 @@ mod tests {
     fn what_one_contact_holds_is_solved_there_and_nowhere_else() {
         for seed in 0..20 {
             let law = ContactLaw::new(0.4, 0.1, FrictionCone::Shifted);
-            // Bodies of contacts are at most two numbers apart, so that the far end is far.
+            // The bodies of a contact are at most two numbers apart, so bodies with distant numbers are far from each
+            // other.
             let mut problem = random_problem::<SpinningPlane>(seed, law, 60, 120, 3, 0.0..0.3);
             for _ in 0..2_000 {
                 sweep::<SpinningPlane, false>(&mut problem);

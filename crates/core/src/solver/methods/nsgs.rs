@@ -1,9 +1,8 @@
-//! Non-linear Gauss–Seidel (M. Jean, 1999): one contact after the other, each solved exactly with
-//! the velocities that the ones before it left.
+//! Non-linear Gauss–Seidel (M. Jean, 1999): one contact after the other, each solved exactly at the velocities that
+//! result from the previous updates.
 //!
-//! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two
-//! scalar projections (`methods::sweep`). For the models of friction that lag (`problem::friction`) it is the
-//! projection of the model.
+//! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two scalar projections
+//! (`methods::sweep`). Models of friction with lagged numbers (`problem::friction`) use the projection of the model.
 
 use super::model_solves::solve_models;
 use super::pass::{sweep_by, sweep_of_model};

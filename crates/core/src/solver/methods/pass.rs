@@ -1,4 +1,4 @@
-//! Passes of Gauss–Seidel over all contacts of a problem, and whether the stopping test is met after them.
+//! Gauss–Seidel passes over all contacts of a problem, with or without the stopping test.
 
 use super::stopping::{SolveReport, is_settled};
 use super::sweep::ImpulseChange;
@@ -9,8 +9,8 @@ use crate::solver::problem::{
 };
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
-/// One sweep of the model of friction that a problem was prepared for, and whether the stopping test is met
-/// after it.
+/// Makes one sweep under the model of friction that a problem was prepared for. Returns true if the stopping test is
+/// met after it.
 pub(super) fn sweep_of_model<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -19,7 +19,7 @@ pub(super) fn sweep_of_model<M: Model>(
     with_projection!(problem, M, P => tested::<M, P>(problem, settings, backward))
 }
 
-/// Sweeps up to so many times under the model of friction of a problem. True where the stopping test is met.
+/// Makes up to `sweeps` sweeps under the model of friction of a problem. Returns true if the stopping test is met.
 pub(super) fn settles_in<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -36,7 +36,7 @@ pub(super) fn settles_in<M: Model>(
     report.converged
 }
 
-/// One sweep under Coulomb's law, and whether the stopping test is met after it.
+/// Makes one sweep under Coulomb's law. Returns true if the stopping test is met after it.
 pub(super) fn tested_sweep<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -74,7 +74,7 @@ pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> Imp
     }
 }
 
-/// One pass over all contacts, from the last to the first where it goes backward.
+/// One pass over all contacts; from the last to the first if `backward`.
 pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     problem: &mut StepProblem<M>,
     backward: bool,
@@ -84,14 +84,14 @@ pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     }
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx") {
-        // SAFETY: the processor has just been asked.
+        // SAFETY: AVX has just been detected.
         return unsafe { pass_with_avx::<M, P, MEASURE>(problem, backward) };
     }
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// The same operations in the same order, and so bitwise the same result, in the three-operand
-/// encoding, which saves the copies that the older one needs.
+/// Performs the same operations in the same order, with bitwise the same result. The three-operand encoding of AVX
+/// saves copies that the older encoding needs.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx")]
 fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
@@ -101,8 +101,8 @@ fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// Where walls are driven (`problem::walls`), what a contact does to its wall is told to the wall at once, and each
-/// contact is solved for its wall's answer as for its grain's.
+/// One pass over all contacts. If walls are driven (`problem::walls`), a contact's impulse changes the velocity of its
+/// wall at once, and each contact is solved with the compliance of its wall as well as of its grain.
 #[inline(always)]
 fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool>(
     problem: &mut StepProblem<M>,
@@ -151,8 +151,8 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     change
 }
 
-/// Solves the contact of a grain with a driven wall, and returns the change of (λ_n, λ_t). A normal impulse moves the
-/// wall along the tangent, too, where it goes askew, so the tangential velocity is read after it.
+/// Solves the contact of a grain with a driven wall, and returns the change of (λ_n, λ_t). If the wall moves obliquely,
+/// a normal impulse also moves it along the tangent, so the tangential velocity is read after the normal update.
 fn solve_driven<M: Model>(
     project: impl Fn([f64; 2]) -> [f64; 2],
     row: &mut FixedRow<M>,

@@ -9,8 +9,9 @@ use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{FixedRow, PairRow, Row, StepProblem};
 
-/// Contacts of bodies of different masses, with numbers below `reach` off each other, every sixth with a fixed body.
-/// `added` is what may be added to v_n: where it is positive nothing has to move, so that there is a solution.
+/// Random contacts between bodies of different masses. The numbers of the two bodies differ by less than `reach`; every
+/// sixth contact is with a fixed body. `added` is the range of the term added to v_n: if it is positive, the problem
+/// has a solution, because no contact forces anything to move.
 pub(super) fn random_problem<M: Model>(
     seed: u64,
     law: ContactLaw,

@@ -1,40 +1,39 @@
-//! When a solve stops, and how it ended.
+//! Stopping tests, and the report of a solve.
 //!
-//! **A solve that has stalled** is to be told from one that was stopped too early.
-//! Restitution's term ρ v^{n−1} can ask of wedged contacts what their neighbours forbid. Such a
-//! problem has no solution: the residual of any iteration comes down to a floor and stays there,
-//! while impulses drift on. A problem that is merely slow to solve shows in twice the sweeps a
-//! residual that is clearly smaller: at 1e5 sweeps for eight digits still by a third from 2,048
-//! sweeps to 4,096. So the residual is looked at each time the number of sweeps has doubled.
+//! **A stalled solve** must be distinguished from one that was stopped too early. The restitution term ρ v^{n−1} can
+//! ask wedged contacts for velocities that their neighbours do not allow. Such a problem has no solution: the residual
+//! of any iteration falls to a floor and stays there, while impulses drift. In a problem that is merely slow to solve,
+//! doubling the number of sweeps clearly reduces the residual: if eight digits take 1e5 sweeps, the residual still
+//! falls by a third from 2,048 sweeps to 4,096. So the residual is checked each time the number of sweeps has doubled.
 //!
-//! A stall is a statement on a method: where Gauss–Seidel stalls, Newton's method finds a solution
-//! now and then, and only where all stall is there a floor.
+//! A stall is a property of a method: sometimes Newton's method finds a solution although Gauss–Seidel stalls. There is
+//! a floor only if all methods stall.
 
 use super::sweep::ImpulseChange;
 use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::VelocityError;
 use crate::solver::settings::{SolverSettings, StopTest};
 
-/// How a solve ended.
+/// The outcome of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveReport {
-    /// Sweeps done; iterations where the method has no sweeps.
+    /// Number of sweeps, or iterations if the method has no sweeps.
     pub sweeps: u32,
-    /// Matrices factorised.
+    /// Number of factorisations.
     pub factorisations: u32,
-    /// True where the stopping test was met.
+    /// True if the stopping test was met.
     pub converged: bool,
-    /// True where a solve that did not converge had stalled, rather than being stopped too early.
+    /// True if a solve that did not converge has stalled, rather than being stopped too early.
     pub stalled: bool,
 }
 
 impl SolveReport {
-    /// Of solves that are still to come.
+    /// Report before the first solve, and of a step without contacts: no work, converged.
     pub(crate) fn nothing_yet() -> Self {
         Self { converged: true, ..Self::default() }
     }
 
-    /// Counts another solve of the same step. The step has stalled where one of them has.
+    /// Adds another solve of the same step. The step has stalled if one of its solves has.
     pub fn add(&mut self, other: Self) {
         self.sweeps += other.sweeps;
         self.factorisations += other.factorisations;
@@ -42,7 +41,7 @@ impl SolveReport {
         self.stalled |= other.stalled;
     }
 
-    /// The same with the work of solves that came before, and of whose outcome nothing is left.
+    /// This report with the sweeps and factorisations of earlier solves added, whose outcome it replaces.
     pub(crate) fn after(self, earlier: Self) -> Self {
         Self {
             sweeps: self.sweeps + earlier.sweeps,
@@ -52,13 +51,13 @@ impl SolveReport {
     }
 }
 
-/// After this many sweeps the stopping test is made only after every [`TEST_INTERVAL`]th: a sweep
-/// that also measures itself costs more. A smaller number makes well-started steps dearer.
+/// After this many sweeps only every [`TEST_INTERVAL`]th sweep is tested, because a sweep that also measures itself
+/// costs more. A smaller number makes steps with a good start more expensive.
 const SWEEPS_TESTED_EACH: u32 = 16;
-/// Sweeps between two tests of a long solve; the most that are done in vain.
+/// Sweeps between two tests of a long solve, and thus the limit of unnecessary sweeps.
 const TEST_INTERVAL: u32 = 8;
 
-/// True where the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
+/// Returns true if the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
 pub(super) fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
     sweeps <= SWEEPS_TESTED_EACH
         || sweeps.is_multiple_of(TEST_INTERVAL)
@@ -66,8 +65,8 @@ pub(super) fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
         || settings.stop == StopTest::ImpulsePerMass
 }
 
-/// Sweeps over `problem` until `sweep`, which is given the number of the sweep from 1, says that the
-/// stopping test is met, until nothing is gained any more, or up to the limit.
+/// Sweeps over `problem` until `sweep` returns true because the stopping test is met, until the solve stalls, or up to
+/// the limit. `sweep` gets the number of the sweep, counted from 1.
 pub(in crate::solver) fn sweep_until_settled<P>(
     problem: &mut P,
     settings: &SolverSettings,
@@ -89,8 +88,8 @@ pub(in crate::solver) fn sweep_until_settled<P>(
     SolveReport { sweeps, stalled, ..SolveReport::default() }
 }
 
-/// True where the stopping test is met after a sweep that made this change, by a mean mass (kg) of the
-/// grains, by Σ P² ((N·s)²), by the residual, or by the velocities' error.
+/// Returns true if the stopping test is met after a sweep with this change. The test uses the mean mass of the grains
+/// (kg), Σ P² ((N·s)²), the residual or the velocity error.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,
@@ -102,7 +101,7 @@ pub(super) fn is_settled<P>(
 ) -> bool {
     let tolerance = settings.tolerance;
     match settings.stop {
-        // An infinite change is no larger than infinite impulses, and settles nothing.
+        // An infinite change compares as no larger than infinite impulses, but is not converged.
         StopTest::RelativeChange => {
             change.squared.is_finite()
                 && change.squared <= tolerance * tolerance * squared_impulses(problem)
@@ -113,19 +112,18 @@ pub(super) fn is_settled<P>(
     }
 }
 
-/// The first look, in sweeps. Earlier, all problems look alike.
+/// Number of sweeps at the first check; before that all problems look alike.
 const FIRST_LOOK: u32 = 512;
-/// A residual above this share of the one at half as many sweeps has stopped falling.
+/// A residual above this fraction of the residual at half as many sweeps counts as flat.
 const FLAT: f64 = 0.95;
-/// Looks in a row without a fall after which a solve that aims at a residual ends. With one, a
-/// solve that pauses on its way is ended too.
+/// Number of flat checks in a row that end a solve to a residual. With 1, a solve that only pauses would end, too.
 const LOOKS_IN_VAIN: u32 = 2;
 
-/// What is known of the residual along a solve.
+/// History of the residual during a solve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StallWatch {
     next_look: u32,
-    /// Residuals of the last two looks, the older one first.
+    /// Residuals of the last two checks, the older one first.
     looks: [f64; 2],
     in_vain: u32,
 }
@@ -137,9 +135,9 @@ impl Default for StallWatch {
 }
 
 impl StallWatch {
-    /// Looks at the residual after a number of sweeps, now and then only. Tells whether to stop: an onlooker may ask
-    /// for it, and a solve that aims at a residual may gain nothing by more sweeps. Other stopping tests are those of
-    /// published schemes, which sweep on.
+    /// Checks the residual each time the number of sweeps has doubled. Returns true if the solve should stop: because
+    /// an onlooker ends it, or because a solve to a residual or velocity error has stalled. With other stopping tests,
+    /// which are those of published schemes, a stalled solve continues.
     pub(super) fn look(
         &mut self,
         sweeps: u32,
@@ -159,8 +157,8 @@ impl StallWatch {
         self.in_vain >= LOOKS_IN_VAIN && settings.stop.judges_solutions()
     }
 
-    /// True where a solve that was given up after so many sweeps with this residual had stalled.
-    /// Compared is the last look at no more than half as many sweeps.
+    /// Returns true if a solve that ended unsolved after this many sweeps with this residual has stalled. The residual
+    /// is compared with the last check at no more than half as many sweeps.
     pub(super) fn has_stalled(&self, sweeps: u32, residual: f64) -> bool {
         let last_look = self.next_look / 2;
         let before = if 2 * last_look <= sweeps { self.looks[1] } else { self.looks[0] };

@@ -1,18 +1,18 @@
-//! The update of one contact in a Gauss–Seidel sweep, or of several that share no grain.
+//! The update of one contact in a Gauss–Seidel sweep, or of several contacts that share no grain.
 //!
 //! In reduced impulses (`contact::law`, `solver::kinematics`):
 //!
 //! > σ ← max(σ − (v_n + ρ v_n^{n−1}), 0),  λ_t ← clamp(λ_t − v_t · m_t/m_n, ±bound(σ)).
 //!
-//! The normal impulse does not change v_t, so both velocities are read once. Other models of friction project the
-//! same trial impulses in another way (`problem::friction`).
+//! The normal impulse does not change v_t, so both velocities are read once. Other models of friction use another
+//! projection of the same trial impulses (`problem::friction`).
 
 use crate::contact::Lanes;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{FixedRow, PairRow, Row};
 
-/// What an update needs of a row beside its impulses; with several lanes, of a row a lane. Units as
-/// in [`Row`].
+/// The data of a row that an update needs, except the impulses; with several lanes, one row per lane. Units as in
+/// [`Row`].
 #[derive(Clone, Copy)]
 pub(crate) struct Local<M: Model, T: Lanes> {
     pub normal: M::Normal<T>,
@@ -20,8 +20,7 @@ pub(crate) struct Local<M: Model, T: Lanes> {
     pub effective_mass: T,
 }
 
-/// How much a sweep changed the impulses; zero where it was not asked to measure. With several
-/// lanes, how much those of each lane.
+/// Change of the impulses in a sweep; zero if it was not measured. With several lanes, one change per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ImpulseChange<T = f64> {
     /// Σ ΔP², (N·s)².
@@ -39,7 +38,7 @@ impl ImpulseChange {
 }
 
 impl<T: Lanes> ImpulseChange<T> {
-    /// Counts a change of (λ_n, λ_t) of an effective mass, where it is asked to measure.
+    /// Adds a change of (λ_n, λ_t) of a contact with effective mass `mass`, if `MEASURE` is set.
     #[inline(always)]
     pub(crate) fn add<M: Model, const MEASURE: bool>(
         &mut self,
@@ -60,14 +59,14 @@ impl<T: Lanes> ImpulseChange<T> {
 }
 
 impl<M: Model, T: Lanes> Local<M, T> {
-    /// (v_n, v_t) of grains i against fixed bodies, as [`FixedRow::velocity`] has it, m/s.
+    /// (v_n, v_t) of grains i against fixed bodies, as in [`FixedRow::velocity`], m/s.
     #[inline(always)]
     pub(crate) fn velocity(&self, surface_speed: T, i: &M::Body<T>) -> [T; 2] {
         let [normal, tangential] = M::velocity(self.normal, i);
         [normal, tangential - surface_speed]
     }
 
-    /// Solves contacts of grains i with fixed bodies, of which `impulse` is (σ, λ_t).
+    /// Solves contacts of grains i with fixed bodies; `impulse` is (σ, λ_t).
     #[inline(always)]
     pub(crate) fn solve_fixed<const MEASURE: bool>(
         &self,
@@ -82,7 +81,7 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Solves contacts between grains i and j, g_i being `share`.
+    /// Solves contacts between grains i and j; `share` is g_i.
     #[inline(always)]
     pub(crate) fn solve_pair<const MEASURE: bool>(
         &self,
@@ -98,7 +97,7 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Solves at the given (v_n, v_t) and returns the change of (λ_n, λ_t).
+    /// Solves contacts at the given (v_n, v_t) and returns the change of (λ_n, λ_t).
     #[inline(always)]
     fn update(
         &self,
@@ -121,7 +120,7 @@ impl<M: Model, T: Lanes> Local<M, T> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// Solves the contact of one of the bodies with a fixed one.
+    /// Solves the contact of a body with a fixed body.
     #[inline(always)]
     pub(crate) fn solve<const MEASURE: bool>(
         &mut self,
@@ -138,7 +137,7 @@ impl<M: Model> FixedRow<M> {
 }
 
 impl<M: Model> PairRow<M> {
-    /// Solves the contact between two of the bodies.
+    /// Solves the contact between two bodies.
     #[inline(always)]
     pub(crate) fn solve<const MEASURE: bool>(
         &mut self,

@@ -1,11 +1,11 @@
-//! Impulses of the step before from which no solve should start, because friction wedged them.
+//! Detects impulses of the step before that are wedged by friction, from which no solve should start.
 //!
-//! Discs in a ring, or in a box that is too small for them, can press each other with any force if friction holds them,
-//! and no velocity shows it: such impulses are a null space of the problem. A warm start keeps what an unsolved step put
-//! there, and products of huge impulses with rounding errors of velocities then look like an error. The path of the interior
-//! point leads to the middle of all such impulses, and under bounds of friction that come from these the middle moves:
-//! for three discs, whose |λ| = σ tan 30° stays within the μσ of the solve before, by a factor μ a solve. So from some μ
-//! on impulses would grow from step to step until rounding stops the solve.
+//! Discs in a ring, or in a box that is too small for them, can press on each other with any force if friction holds
+//! them, and no velocity shows it: such impulses are in the null space of the problem. A warm start keeps the wedged
+//! impulses of an unsolved step. Products of huge impulses and rounding errors of velocities then look like an error.
+//! The path of the interior point leads to the middle of all such impulses. If the friction bounds come from these
+//! impulses, the middle moves: for three discs, whose |λ| = σ tan 30° stays within the μσ of the solve before, by a
+//! factor of μ per solve. So above a certain μ impulses would grow from step to step until rounding stops the solve.
 
 use glam::DVec2;
 
@@ -13,15 +13,15 @@ use crate::solver::kinematics::Model;
 use crate::solver::problem::{Bodies, StepProblem};
 use crate::solver::settings::FrictionModel;
 
-/// Above this μ the bounds of friction of a step are assumed to come from wedged impulses. At 2.5 the impulses of piles stay at
-/// 9 to 100 grain weights in the root mean square (5 to 7 from a cold start), the more the higher Bond is; at 3 and Bond 20
-/// they grow to 3e4 in 0.3 s.
+/// Above this μ the friction bounds of a step are assumed to come from wedged impulses. At μ = 2.5 the impulses of
+/// piles stay at 9 to 100 grain weights in the root mean square (5 to 7 from a cold start), the more the higher Bond
+/// is; at μ = 3 and Bond 20 they grow to 3e4 in 0.3 s.
 const WEDGING_FRICTION: f64 = 2.0;
-/// A contact is wedged if its impulse is more than this many times the momentum that all bodies are given. Levers and arches
-/// multiply it a few times.
+/// A contact is wedged if its impulse is more than this many times the total momentum that contacts give the bodies.
+/// Levers and arches multiply the impulse only a few times.
 const WEDGED: f64 = 3.0;
 
-/// True if friction may have wedged the impulses that a solve would start from.
+/// Returns true if friction may have wedged the impulses that a solve would start from.
 pub(super) fn is_wedged<M: Model>(problem: &StepProblem<M>) -> bool {
     let model = problem.friction.model;
     if !M::FRICTION || !matches!(model, FrictionModel::Coulomb | FrictionModel::Tresca) {
@@ -42,7 +42,7 @@ pub(super) fn is_wedged<M: Model>(problem: &StepProblem<M>) -> bool {
         .any(|(number, row)| row.effective_mass * problem.reduced_impulse(number, row)[0] > most)
 }
 
-/// Starts a solve without the impulses of the step before.
+/// Resets the impulses of the step before, for a cold start.
 pub(super) fn start_cold<M: Model>(problem: &mut StepProblem<M>) {
     for number in 0..problem.rows.len() {
         let capture_speed = problem.capture(number);

@@ -1,4 +1,4 @@
-//! Measures of a solved step: residual, error of the velocities, contacts and works, in one pass over the rows.
+//! Measures of a solved step: residual, velocity error, contact counts and works, in one pass over the rows.
 
 use super::residual::{Sums, natural_map};
 use super::row_velocities::{RowVelocities, sum_of_rows};
@@ -7,16 +7,17 @@ use super::{Row, StepProblem};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// What one pass over the rows tells of a solved step.
+/// Results of one pass over the rows of a solved step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
     /// The common residual, dimensionless.
     pub residual: f64,
-    /// The natural map of the model of friction that was solved, likewise; none under Coulomb's law, whose
-    /// it is already.
+    /// The residual of the model of friction that was solved, dimensionless; `None` under Coulomb's law, for which it
+    /// would equal `residual`.
     pub model_residual: Option<f64>,
-    /// How far the velocities are from those that Coulomb's law asks for, whatever was solved, m/s: an estimate of the root
-    /// mean square over the grains that touch something, weighted with mass ([`VelocityError`](super::VelocityError)).
+    /// Distance of the velocities from those that Coulomb's law asks for, whichever model was solved, m/s: an estimate
+    /// of the root mean square over the grains with contacts, weighted by mass
+    /// ([`VelocityError`](super::VelocityError)).
     pub velocity_error: f64,
     /// Contacts with P_n > 0.
     pub compressive_contacts: u32,
@@ -26,20 +27,20 @@ pub struct Measures {
     pub normal_work: f64,
     /// Work of the tangential impulses, J.
     pub tangential_work: f64,
-    /// Of both, the work of surfaces that move, J.
+    /// The part of both works that is done by moving surfaces, J.
     pub wall_work: f64,
-    /// Beside both, what images that slide do to the grains that touch them, J.
+    /// Work of sliding images on the grains that touch them, J; not part of the other works.
     pub border_work: f64,
 }
 
 impl Measures {
-    /// Tells of a step that was solved under Coulomb's law what is told of others of its run, which were solved
-    /// under a model of friction: its common residual.
+    /// Reports the common residual of a step that was solved under Coulomb's law also as its model residual, because
+    /// other steps of the run were solved under a model of friction.
     pub(crate) fn measure_as_a_model(&mut self) {
         self.model_residual = self.model_residual.or(Some(self.residual));
     }
 
-    /// Counts other rows of the same problem.
+    /// Adds the contact counts and works of other rows of the same problem.
     fn add_rows(&mut self, rows: Self) {
         self.compressive_contacts += rows.compressive_contacts;
         self.tensile_contacts += rows.tensile_contacts;
@@ -48,7 +49,7 @@ impl Measures {
         self.border_work += rows.border_work;
     }
 
-    /// Counts another piece of the same step; the contacts are those at its end.
+    /// Adds another part of the same step; the contact counts are those of the last part.
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, velocity_error, .. } = piece;
         let Self { compressive_contacts, tensile_contacts, .. } = piece;
@@ -65,11 +66,11 @@ impl Measures {
     }
 }
 
-/// The residual of the model of friction of a problem; none under Coulomb's law.
+/// The residual of the model of friction of a problem; `None` under Coulomb's law.
 fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
     match problem.friction.model {
         FrictionModel::Coulomb => None,
-        // Without friction all models are one.
+        // Without friction all models are the same.
         _ if !M::FRICTION => Some(common_residual),
         _ => Some(natural_map(problem)),
     }
@@ -82,17 +83,17 @@ fn worst_of(one: Option<f64>, other: Option<f64>) -> Option<f64> {
     }
 }
 
-/// The larger of two residuals or other measures of what went wrong: not a number where one is none.
+/// The larger of two residuals or other errors; NaN if one of them is NaN.
 pub fn worst(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
 
-/// Residual, contact counts and works in one pass.
+/// Measures residual, velocity error, contact counts and works in one pass.
 ///
-/// Work: from v^n = v^{n−1} + M⁻¹(ΔtF + HP) the kinetic energy changes by
-/// ½(v^n + v^{n−1})·(ΔtF + HP), so a contact impulse does the work P·½(u^n + u^{n−1}) with u its
-/// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
-/// left undone. Where j is an image that slides, u is relative to that, and P·(what it slides by) is the border's work.
+/// Work: from v^n = v^{n−1} + M⁻¹(ΔtF + HP) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP), so a contact
+/// impulse does the work P·½(u^n + u^{n−1}) with u its relative velocity. Together with the work of gravity this closes
+/// the energy budget to rounding, however large the solver's error is. If j is a sliding image, u is relative to the
+/// image, and P times the slide velocity is the work of the border.
 // Compiled once, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {

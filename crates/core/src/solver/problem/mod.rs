@@ -1,8 +1,7 @@
-//! The problem of one step: its data, how it is set up, and what judges its solution.
+//! The problem of one step: its data, its set-up, and the measures of its solution.
 //!
-//! A problem is prepared in one go ([`StepProblem::prepare`]): bodies, then rows in the order of the sweep, then
-//! surfaces that move, then the velocities that the rows' impulses make, and last what the model of friction
-//! takes from all of these.
+//! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows in the order of the sweep, moving surfaces,
+//! the velocities that the rows' impulses make, and last the lagged numbers of the model of friction.
 
 mod friction;
 mod measures;
@@ -39,33 +38,35 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::{FrictionCone, World};
 
-/// All contacts of one step. Memory is kept between steps.
+/// The contact problem of one step. Memory is kept between steps.
 ///
-/// From outside a problem can be looked at; its impulses are changed by the methods, and by one of your own
-/// through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows in step.
+/// Code outside this crate can read a problem. Its impulses are changed by the methods, and by a method of your own
+/// through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
 #[derive(Clone, Debug, Default)]
 pub struct StepProblem<M: Model> {
     /// The bodies that the rows' impulses move.
     pub bodies: Bodies<M>,
-    /// One row a contact.
+    /// One row per contact.
     pub rows: ContactRows<M>,
     /// The numbers of the contact law.
     pub law: ContactLaw,
     /// Fixed bodies whose surfaces move.
     pub(crate) walls: MovingWalls,
-    /// What is asked of friction.
+    /// The model of friction and its lagged numbers.
     pub(crate) friction: LaggedFriction,
-    /// √(g d), m/s: what errors of velocities are held against.
+    /// √(g d), m/s, the scale of velocity errors.
     pub(crate) fall_speed: f64,
-    /// Which bodies have contacts, and their mass, kg; empty where all have.
+    /// True for each body that has contacts; empty if all have.
     pub(super) touches: Vec<bool>,
+    /// Total mass of these bodies, kg.
     pub(super) touching_mass: f64,
-    /// The longest side of what touches, in mean diameters; 0 where places are not known.
+    /// The longest side of the bounding box of the grains with contacts, in mean diameters; 0 if positions are not
+    /// known.
     pub(super) extent: f64,
-    /// The direction of the sum of the normals of contacts with fixed bodies; 0 if it has none.
+    /// Unit vector along the sum of the normals of contacts with fixed bodies; 0 if the sum is 0.
     pub(super) way_out: DVec2,
     pub(super) order: RowOrder,
-    /// √m_ij of the rows, kg^½, for methods that work on scaled variables.
+    /// √m_ij of the rows, kg^½, for methods with scaled variables.
     pub(super) root_masses: Vec<f64>,
 }
 
@@ -78,25 +79,25 @@ pub struct ProblemNumbers {
     pub friction: f64,
     /// C₀Δt/m_ij, m/s; 0 without cohesion.
     pub capture_speed: f64,
-    /// Which part of the normal force rubs; the shifted cone where there is no cohesion.
+    /// The part of the normal force that friction acts on; the shifted cone if there is no cohesion.
     pub cone: FrictionCone,
 }
 
-/// How a contact's bodies come to each other before the step.
+/// Relative motion and gap of a contact's bodies before the step.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach {
-    /// v_n^{n−1}, relative to a wall that moves, m/s.
+    /// v_n^{n−1}, relative to the wall if the wall moves, m/s.
     pub velocity: f64,
-    /// m; negative is overlap.
+    /// Gap, m; negative is overlap.
     pub gap: f64,
-    /// True where the pair touches or is bonded, false where it just comes near.
+    /// True if the pair touches or is bonded, false if it is only near.
     pub in_touch: bool,
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets up a step: free velocities, and rows in the order of the method and its settings that carry the impulses of
-    /// `contacts` (warm start) or none. `rebound` gives what the law adds to v_n of a contact, m/s; `surfaces` are
-    /// those that move, if any does.
+    /// Sets up a step: free velocities, and rows in the order of the method and its settings. The rows start with the
+    /// impulses of `contacts` (warm start) or without impulses. `rebound` gives the term that the law adds to v_n of a
+    /// contact, m/s; `surfaces` are the moving surfaces, if there are any.
     pub fn prepare(
         &mut self,
         world: &World,
@@ -108,7 +109,7 @@ impl<M: Model> StepProblem<M> {
     ) {
         let ProblemNumbers { time_step_secs, friction, capture_speed, cone } = numbers;
         self.law = ContactLaw::new(friction, capture_speed, cone);
-        // Without gravity only cohesion sets a scale of speeds: without both, a velocity's error has none.
+        // Without gravity, cohesion alone sets a scale of speeds; without both there is no scale for velocity errors.
         let acceleration = match world.gravity.magnitude() {
             0.0 => capture_speed / time_step_secs,
             gravity => gravity,
@@ -134,7 +135,7 @@ impl<M: Model> StepProblem<M> {
         self.begin_friction(settings.friction_model);
     }
 
-    /// Packs the bodies as they are, and as gravity alone would leave them.
+    /// Stores the bodies' velocities at the beginning of the step, and after gravity alone has acted.
     fn place_bodies(&mut self, world: &World, time_step_secs: f64) {
         let grains = &world.grains;
         let Bodies { before, free, masses, mean_mass, .. } = &mut self.bodies;
@@ -147,7 +148,7 @@ impl<M: Model> StepProblem<M> {
         });
     }
 
-    /// Makes the rows, of which the first `fixed` are with fixed bodies.
+    /// Creates the rows; the first `fixed` of them are against fixed bodies.
     fn fill_rows(
         &mut self,
         world: &World,
@@ -193,7 +194,7 @@ impl<M: Model> StepProblem<M> {
         threads::fill(&mut pair_rows, self.rows.contacts.len() - fixed, |number| {
             let number = fixed + number;
             let contact = contact(number);
-            // Grains come first among the bodies.
+            // Body indices: grains come first.
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses[j] / (masses[i] + masses[j]);
             let normal = M::normal_of(world, contact);
@@ -203,7 +204,7 @@ impl<M: Model> StepProblem<M> {
         (self.rows.fixed, self.rows.pairs) = (fixed_rows, pair_rows);
     }
 
-    /// Notes which bodies have contacts.
+    /// Records which bodies have contacts, and their total mass.
     fn find_what_touches(&mut self) {
         let Self { bodies, rows, touches, touching_mass, .. } = self;
         touches.clear();
@@ -217,7 +218,7 @@ impl<M: Model> StepProblem<M> {
         *touching_mass = masses.map(|(mass, touches)| if *touches { *mass } else { 0.0 }).sum();
     }
 
-    /// Is solved under Coulomb's law from now on, from the impulses that it has, brought into its cone.
+    /// Switches to Coulomb's law: clips the tangential impulses to its bound and forms the velocities again.
     pub fn take_coulombs_law(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
@@ -231,7 +232,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Notes how far what touches extends, and which way leads off the fixed bodies.
+    /// Records the extent of the grains with contacts, and the mean direction away from the fixed bodies.
     fn find_extent(&mut self, world: &World) {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (&place, touches) in world.grains.positions.iter().zip(&self.touches) {
@@ -245,13 +246,13 @@ impl<M: Model> StepProblem<M> {
         self.way_out = normals.sum::<DVec2>().normalize_or_zero();
     }
 
-    /// About how many grains pass a push on from one to the next at most.
+    /// Estimate of the longest chain of grains that pass on a push.
     fn grains_in_a_row(&self) -> f64 {
         let grains = self.bodies.masses.len() as f64;
         if self.extent > 0.0 { self.extent.min(grains) } else { grains.sqrt() }
     }
 
-    /// Has errors of velocities held against what they are in a problem of which this one has some rows.
+    /// Uses the error scales of `whole`, of whose rows this problem has a subset.
     pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
         self.fall_speed = whole.fall_speed;
         self.touches.clone_from(&whole.touches);
@@ -286,8 +287,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Puts rows that were not made by [`StepProblem::prepare`] in the order of colours, for the
-    /// method that needs it.
+    /// Sorts by colours rows that were not made by [`StepProblem::prepare`], for the method that needs colours.
     pub fn sort_by_colours(&mut self) {
         let Self { rows, order, bodies, .. } = self;
         let contact = |row: &Row<M>, other: u32| Contact {
@@ -308,13 +308,13 @@ impl<M: Model> StepProblem<M> {
         rows.contacts = sorted.iter().map(|&row| rows.contacts[row as usize]).collect();
     }
 
-    /// The capture speed of a row by its number, m/s.
+    /// The capture speed of row `number`, m/s.
     #[inline(always)]
     pub fn capture(&self, number: usize) -> f64 {
         self.rows.capture(number, &self.law)
     }
 
-    /// (λ_n, λ_t) of a row with its number, m/s.
+    /// (λ_n, λ_t) of row `number`, m/s.
     #[inline(always)]
     pub fn reduced_impulse(&self, number: usize, row: &Row<M>) -> [f64; 2] {
         [row.shifted_impulse - self.capture(number), row.tangential_impulse]
@@ -325,8 +325,8 @@ impl<M: Model> StepProblem<M> {
         self.rows.iter().enumerate()
     }
 
-    /// Visits the rows by their numbers with (v_n, v_t) among these bodies, m/s; v_t relative to surfaces that
-    /// move.
+    /// Visits all rows in order with their (v_n, v_t) at the velocities `bodies`, m/s; v_t is relative to moving
+    /// surfaces.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,
@@ -341,7 +341,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Hands the rows' impulses back to the contacts, in N·s.
+    /// Writes the rows' impulses back to the contacts, in N·s.
     pub(crate) fn store_impulses(&self, contacts: &mut ContactList) {
         let impulses = contacts.impulses_mut();
         for ((number, row), &index) in self.rows().zip(&self.rows.contacts) {
@@ -352,7 +352,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Gives the rows the impulses of a step that was taken in another way, one a contact, N·s.
+    /// Gives the rows the impulses that another algorithm has found for this step, one per contact, N·s.
     pub(crate) fn set_impulses(&mut self, impulses: &[Impulse]) {
         for number in 0..self.rows.len() {
             let Impulse { normal, tangential } = impulses[self.rows.contacts[number] as usize];
@@ -363,7 +363,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Gives the rows impulses (σ, λ_t), m/s, and the bodies the velocities that they make.
+    /// Sets the rows' impulses (σ, λ_t), m/s, and forms the velocities that they make.
     pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         for (row, impulse) in self.rows.iter_mut().zip(impulses) {
             [row.shifted_impulse, row.tangential_impulse] = impulse;

@@ -1,7 +1,7 @@
-//! In which order a sweep visits the contacts, and which of them can be solved at the same time.
+//! The order in which a sweep visits the contacts, and the groups of contacts that can be solved at the same time.
 //!
-//! Whatever the order, contacts with fixed bodies come first, then those between grains, so that
-//! each kind has a loop of its own; an order is one within each kind.
+//! In every order, contacts with fixed bodies come first, then contacts between grains, so that each kind has its own
+//! loop. An order applies within each kind.
 
 use std::ops::Range;
 
@@ -11,18 +11,18 @@ use crate::contact::{Contact, Numbering};
 use crate::solver::method::Ordering;
 use crate::world::World;
 
-/// What rows of one kind, sorted by tiles and colours, can be solved at the same time.
+/// Groups of rows of one kind, sorted by tiles and colours, that can be solved at the same time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {
-    /// Ends of the colours among the rows: those of a colour share no grain.
+    /// Ends of the colours, as row numbers. Rows of one colour share no grain.
     pub colour_ends: Vec<usize>,
-    /// Ends of the tiles among the colours: those of two tiles share no grain. The colours behind the last are
-    /// of contacts between tiles.
+    /// Ends of the tiles, as colour numbers. Rows of two different tiles share no grain. Colours after the last tile
+    /// contain the contacts between tiles.
     pub tile_ends: Vec<usize>,
 }
 
 impl RowGroups {
-    /// The rows of each colour of a tile, or of those between tiles where it is behind the last.
+    /// Row ranges of the colours of a tile, or of the contacts between tiles if `tile` is past the last tile.
     pub(crate) fn colours_of(&self, tile: usize) -> impl Iterator<Item = Range<usize>> {
         let start_of = |ends: &[usize], at: usize| at.checked_sub(1).map_or(0, |at| ends[at]);
         let (ends, tiles) = (&self.colour_ends, &self.tile_ends);
@@ -38,41 +38,39 @@ impl RowGroups {
     }
 }
 
-/// Stretches that the order of detection is cut into when it is interleaved. Neighbours in the order
-/// of detection share a grain, so each update would wait for the one before it to finish; interleaved,
-/// updates in flight touch different grains. With fewer, updates wait for each other; with many more,
-/// a sweep over a large pile loses its locality in the cache. Up to this many contacts of a kind the
-/// two orders are the same.
+/// Number of stretches into which the order of detection is cut to interleave it. Neighbours in the order of detection
+/// share a grain, so each update would wait for the one before it to finish; interleaved updates touch different
+/// grains. With fewer stretches, updates wait for each other; with many more, a sweep over a large pile loses its
+/// locality in the cache. Up to this many contacts of a kind the two orders are the same.
 const STREAMS: usize = 8;
 
-/// Colours that a grain keeps account of. Contacts that find none free, on a grain with more
-/// neighbours than that, get a colour each.
+/// Number of colours that are tracked per grain. A contact that finds no free colour, because a grain has more
+/// neighbours than that, gets a colour of its own.
 const COLOURS: u32 = u128::BITS;
 
-/// Sorts contacts. Memory is kept between steps.
+/// Sorts contacts by an order. Memory is kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowOrder {
-    /// Which rows against fixed bodies, and which between grains, can be solved at the same time; empty
-    /// where rows are not coloured.
+    /// Groups of rows against fixed bodies, and of rows between grains; empty if rows are not coloured.
     pub groups: [RowGroups; 2],
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
     tiles: Tiles,
-    /// Contacts with their tile and colour, as one number.
+    /// (tile · [`COLOURS`] + colour, contact).
     coloured: Vec<(u32, u32)>,
     /// Contacts between tiles.
     between: Vec<u32>,
-    /// Contacts that found no colour.
+    /// Contacts that found no free colour.
     of_their_own: Vec<u32>,
-    /// Contacts of each colour of each tile, then where the next of them goes.
+    /// Number of contacts of each colour of each tile; while they are placed, the next free place.
     counts: Vec<usize>,
-    /// The colours that each grain has, one bit each.
+    /// The colours used at each grain, as a bit set.
     taken: Vec<u128>,
 }
 
 impl RowOrder {
-    /// Puts the numbers of contacts into `rows`, in an order. Tells how many of them, the first, are with fixed
-    /// bodies.
+    /// Fills `rows` with the numbers of the contacts in the given order. Returns the number of contacts with fixed
+    /// bodies, which come first.
     pub(super) fn sort(
         &mut self,
         ordering: Ordering,
@@ -87,7 +85,7 @@ impl RowOrder {
         let grains = world.grains.len();
         let is_pair = |index: &u32| (contacts[*index as usize].other as usize) < grains;
         let mut fixed = 0;
-        // Of one kind after the other, in the order of detection.
+        // One kind after the other, each in the order of detection.
         for (kind, are_pairs) in [false, true].into_iter().enumerate() {
             fixed = rows.len();
             self.take((0..contacts.len() as u32).filter(|index| is_pair(index) == are_pairs), kind);
@@ -101,8 +99,7 @@ impl RowOrder {
         fixed
     }
 
-    /// Contacts by colours, of which nothing is known but their bodies and that the first `fixed` are with fixed
-    /// ones.
+    /// Sorts by colours contacts of which only the bodies are known, and that the first `fixed` are with fixed bodies.
     pub(super) fn sort_by_colours(
         &mut self,
         grains: usize,
@@ -119,7 +116,7 @@ impl RowOrder {
         rows
     }
 
-    /// Takes up the contacts of one kind (0: with fixed bodies, 1: between grains).
+    /// Selects the contacts of one kind (0: with fixed bodies, 1: between grains).
     fn take(&mut self, numbers: impl Iterator<Item = u32>, kind: usize) {
         self.detected.clear();
         self.detected.extend(numbers);
@@ -133,8 +130,7 @@ impl RowOrder {
         }
     }
 
-    /// By the potential of gravity at the contact points, which is the height times g where gravity
-    /// is uniform.
+    /// Sorts by the potential of gravity at the contact points, which is g times the height if gravity is uniform.
     fn sort_by_height(&mut self, world: &World, contacts: &[Contact], rows: &mut Vec<u32>) {
         let potential = |&number: &u32| {
             let contact = &contacts[number as usize];
@@ -148,9 +144,9 @@ impl RowOrder {
         rows.extend(self.keys.iter().map(|&(_, number)| number));
     }
 
-    /// Sorts contacts by tiles, those between tiles last, and within a tile by colours: every contact gets
-    /// the first colour that neither of its grains has yet, which makes at most 2k − 1 colours where no
-    /// grain has more than k contacts.
+    /// Sorts contacts by tiles, those between tiles last, and within a tile by colours. Each contact gets the first
+    /// colour that is not yet used at either of its grains. This makes at most 2k − 1 colours if no grain has more than
+    /// k contacts.
     fn colour(&mut self, grains: usize, contacts: &[Contact], rows: &mut Vec<u32>, kind: usize) {
         self.coloured.clear();
         self.of_their_own.clear();
@@ -169,7 +165,7 @@ impl RowOrder {
                 None => self.between.push(number),
             }
         }
-        // Between tiles colours are counted anew: they are solved after all others.
+        // Contacts between tiles are solved after all others, so their colours start again from the first.
         self.taken.fill(0);
         for at in 0..self.between.len() {
             let number = self.between[at];
@@ -190,7 +186,7 @@ impl RowOrder {
         self.coloured.push((tile as u32 * COLOURS + colour, number));
     }
 
-    /// Counts how many contacts each colour of each tile has, and puts them there in the order of detection.
+    /// Counts the contacts of each colour of each tile, and places them group by group in the order of detection.
     fn group(&mut self, rows: &mut Vec<u32>, kind: usize) {
         let tiles = self.tiles.count;
         let (counts, groups) = (&mut self.counts, &mut self.groups[kind]);
@@ -215,7 +211,7 @@ impl RowOrder {
             rows[before + *place] = number;
             *place += 1;
         }
-        // Whoever has more neighbours than there are colours lies in no tile.
+        // Contacts without a free colour belong to no tile.
         for &number in &self.of_their_own {
             rows.push(number);
             groups.colour_ends.push(rows.len() - before);
@@ -224,27 +220,27 @@ impl RowOrder {
     }
 }
 
-/// Grains of a dense pile in a tile: bodies of 16 KB, a third of the nearest cache of a processor of today. With
-/// fewer, more contacts lie between tiles; with more, bodies are pushed out of the cache by rows that pass
-/// through, and a small pile has too few tiles for several threads.
+/// Grains per tile of a dense pile: their bodies take 16 KB, a third of the first-level cache of a current processor.
+/// With fewer grains, more contacts lie between tiles. With more, rows that stream through push bodies out of the
+/// cache, and a small pile has too few tiles for several threads.
 const GRAINS_IN_TILE: usize = 512;
-/// Scenes of up to so many grains are one tile: their rows fit in the second cache, and waking a thread costs
+/// Scenes of up to this many grains are one tile: their rows fit in the second-level cache, and waking a thread costs
 /// more than it gains.
 const GRAINS_IN_ONE: usize = 2048;
-/// Tiles of a scene that is not dense: no more than one for so many grains, that empty ones cost nothing.
+/// Minimum mean number of grains per tile of a scene that is not dense, so that empty tiles cost nothing.
 const LEAST_GRAINS_A_TILE: usize = 64;
 
-/// Which tile each grain lies in. Tiles are squares of the plane, so small that the bodies of one stay in the
-/// nearest cache while its contacts are solved. They share no grain, so several can be solved at the same time.
+/// The tile of each grain. Tiles are squares of the plane, small enough that the bodies of one tile stay in the
+/// first-level cache while its contacts are solved. Tiles share no grain, so several can be solved at the same time.
 #[derive(Clone, Debug, Default)]
 struct Tiles {
     of_grain: Vec<u32>,
-    /// How many there are.
+    /// Number of tiles.
     count: usize,
 }
 
 impl Tiles {
-    /// Lays squares over the grains of a world. They depend on where the grains lie to each other alone.
+    /// Lays square tiles over the grains of a world. The tiles depend only on the relative positions of the grains.
     fn lay(&mut self, world: &World) {
         let positions = &world.grains.positions;
         if positions.len() <= GRAINS_IN_ONE {
@@ -261,7 +257,7 @@ impl Tiles {
         while squares(side).element_product() > most {
             side *= 2.0;
         }
-        // Grains that are infinitely far from each other leave a number that is none.
+        // If grains are infinitely far apart, the number of squares is NaN, and `max` makes it 1.
         let [columns, rows] = squares(side).to_array().map(|count| count.max(1.0) as usize);
         self.count = columns * rows;
         self.of_grain.clear();
@@ -271,8 +267,7 @@ impl Tiles {
         }));
     }
 
-    /// One tile after the other takes its share of the grains as they are numbered, where nothing is known of
-    /// their places.
+    /// Fills the tiles with grains in the order of their numbers, for grains of unknown position.
     fn lay_by_number(&mut self, grains: usize) {
         if grains <= GRAINS_IN_ONE {
             return self.lay_one(grains);
@@ -288,7 +283,7 @@ impl Tiles {
         self.of_grain.resize(grains, 0);
     }
 
-    /// The tile that all of these grains lie in; none where they lie in several.
+    /// The tile that contains all of these grains; `None` if they lie in several tiles.
     fn of(&self, grains: [Option<usize>; 2]) -> Option<usize> {
         let mut tiles = grains.into_iter().flatten().map(|grain| self.of_grain[grain] as usize);
         let first = tiles.next()?;
@@ -325,7 +320,7 @@ mod tests {
         (rows, pairs.colour_ends)
     }
 
-    /// A hub with more neighbours than a grain keeps account of, and a ring around it.
+    /// A hub with more neighbours than there are colours, and a ring around it.
     fn hub() -> Vec<Contact> {
         let contact = |grain, other| Contact { grain, other, normal: DVec2::Y, gap: -1e-9 };
         let spokes = (1..138).map(|other| contact(0, other));
@@ -394,7 +389,7 @@ mod tests {
     #[test]
     fn tiles_of_a_dense_packing_are_squares_wherever_it_lies() {
         let tiles = laid(|at| at);
-        // 59 diameters between the outermost, by 22.6.
+        // 59 diameters between the outermost grains, over a side of 22.6 diameters.
         assert_eq!(tiles.count, 9);
         for tile in 0..9 {
             let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
@@ -418,7 +413,7 @@ mod tests {
             let tiles = laid(|at| at * far);
             assert!(tiles.count <= SIDE * SIDE / LEAST_GRAINS_A_TILE, "{}", tiles.count);
         }
-        // So far apart that the distance is no number.
+        // So far apart that the distance overflows.
         assert_eq!(laid(|at| (at - DVec2::splat(0.5)).signum() * f64::MAX).count, 1);
         let mut tiles = Tiles::default();
         tiles.lay_by_number(GRAINS_IN_ONE);

@@ -1,4 +1,4 @@
-//! The natural map: the residual that is common to all methods, and those of models of friction.
+//! The natural map: the residual that is common to all methods, and the residuals of the models of friction.
 
 use super::friction::{FrictionProjection, with_projection};
 use super::row_velocities::{RowVelocities, sum_of_rows};
@@ -7,24 +7,22 @@ use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// The natural map's residual in impulse units. A contact's impulses solve its law exactly where
-/// they are the projections that a Gauss–Seidel update would make of them, so with
-/// p = P_n + C₀Δt
+/// The residual of the natural map in impulse units. A contact's impulses solve its law exactly if a Gauss–Seidel
+/// update, which projects them, would not change them. So with p = P_n + C₀Δt
 ///
 /// > e_n = p − max(0, p − m_n (v_n + ρ v_n^{n−1})),  e_t = P_t − clamp(P_t − m_t v_t, ±bound(p)),
 ///
 /// > residual = ‖(e_n, e_t)‖₂ / ‖(m_n v_n^free, m_t v_t^free)‖₂,
 ///
-/// with v^free the relative velocity without any contact impulse, restitution's term included. It
-/// is 0 where nothing moves and nothing errs beyond rounding, and infinite where nothing would move and
-/// something errs. Rows hold p/m_n and P_t/m_n, so each row's terms are
-/// formed in m/s and weighted by m_n.
+/// with v^free the relative velocity without any contact impulse, including the restitution term. If nothing would move
+/// without contacts, the residual is 0 if the error is only rounding, and infinite otherwise. Rows store p/m_n and
+/// P_t/m_n, so each row's terms are formed in m/s and weighted by m_n.
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
 }
 
-/// What [`residual`] is made of.
+/// The sums that make up [`residual`].
 fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
@@ -32,8 +30,8 @@ fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// The same of the model of friction that a problem is solved by: the natural map of its projection
-/// (`problem::friction`), over the same scale, so that both can be set side by side.
+/// The sums for the model of friction that a problem is solved by: the natural map of its projection
+/// (`problem::friction`), over the same scale as [`residual`], so that both can be compared.
 fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
@@ -47,19 +45,19 @@ fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> 
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// The natural map of a projection: that of Coulomb's law, or of the model of friction.
+/// The sums of the natural map of a projection: of Coulomb's law, or of a model of friction.
 fn map_of<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     if P::LAGS { projection_map::<M, P>(problem) } else { common_map(problem) }
 }
 
-/// The natural map's residual of a projection.
+/// The residual of the natural map of a projection, dimensionless.
 pub(crate) fn projection_residual<M: Model, P: FrictionProjection>(
     problem: &StepProblem<M>,
 ) -> f64 {
     map_of::<M, P>(problem).residual(problem)
 }
 
-/// The natural map of what a problem is solved for: of its model of friction, or the common one.
+/// The sums of the natural map of the law that a problem is solved for: its model of friction, or Coulomb's law.
 pub(super) fn natural_map_sums<M: Model>(problem: &StepProblem<M>) -> Sums {
     with_projection!(problem, M, P => map_of::<M, P>(problem))
 }
@@ -69,7 +67,7 @@ pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
     natural_map_sums(problem).residual(problem)
 }
 
-/// (e_n, e_t) of [`residual`] over the effective masses, m/s, of contacts with these (σ, λ_t) and (v_n, v_t).
+/// (e_n, e_t) of [`residual`] divided by the effective masses, m/s, of contacts with these (σ, λ_t) and (v_n, v_t).
 #[inline(always)]
 pub(crate) fn errors<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -86,7 +84,7 @@ pub(crate) fn errors<M: Model, T: Lanes>(
     [error, tangential - law::coulomb(tangential - compliance * tangential_velocity, bound)]
 }
 
-/// The square of the scale of [`residual`], which is the same during a whole solve.
+/// The squared scale of [`residual`], which is constant during a solve.
 pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let add_scale = |sums: &mut Sums, (_, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_scale::<M>(row, motion.free);
@@ -94,7 +92,7 @@ pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M>) -> f64 
     sum_of_rows(problem, add_scale, Sums::add_all).scale
 }
 
-/// [`residual`] from the squares of its error and scale.
+/// Forms [`residual`] from its squared error and squared scale.
 pub(crate) fn residual_of<M: Model>(
     problem: &StepProblem<M>,
     [squared_error, squared_scale]: [f64; 2],
@@ -102,7 +100,7 @@ pub(crate) fn residual_of<M: Model>(
     Sums { error: squared_error, scale: squared_scale }.residual::<M>(problem)
 }
 
-/// The squares of a residual's error and scale.
+/// Squared error and squared scale of a residual.
 #[derive(Default)]
 pub(crate) struct Sums {
     pub(super) error: f64,
@@ -144,7 +142,7 @@ impl Sums {
         }
     }
 
-    /// Adds what a row would do if no contact acted, by its free (v_n, v_t), m/s.
+    /// Adds a row's contribution to the scale, from its free (v_n, v_t), m/s.
     #[inline(always)]
     fn add_scale<M: Model>(&mut self, row: &Row<M>, free: [f64; 2]) {
         let squared_mass = row.effective_mass * row.effective_mass;
@@ -165,18 +163,18 @@ impl Sums {
     }
 }
 
-/// Where nothing would move without contacts, errors of up to this share of the impulses are what
-/// rounding left, and no residual. Smaller: methods that scale impulses would not have solved a step in
-/// which nothing happens; larger: errors would go unseen.
+/// Relative rounding error of impulses. If nothing would move without contacts, errors of up to this fraction of the
+/// impulses count as 0. If it were smaller, methods that scale impulses would not solve a step in which nothing
+/// happens; if it were larger, errors would go unseen.
 pub(super) const ROUNDING: f64 = 1e-14;
 
-/// What that leaves of errors, N·s.
+/// The error that counts as rounding, N·s.
 pub(super) fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
     let squared = |row: &Row<M>| squared_impulse(row.effective_mass, row.impulse());
     ROUNDING * problem.rows.iter().map(squared).sum::<f64>().sqrt()
 }
 
-/// P² of an impulse (λ_n, λ_t) of an effective mass, (N·s)².
+/// P² of an impulse (λ_n, λ_t) with effective mass `mass`, (N·s)².
 #[inline(always)]
 pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
     mass * mass * (normal * normal + tangential * tangential)

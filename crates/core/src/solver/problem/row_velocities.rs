@@ -1,4 +1,4 @@
-//! The rows of a problem with their relative velocities, visited in order, and sums over them.
+//! Visits the rows of a problem in order with their relative velocities, and sums over them.
 
 use std::ops::Range;
 
@@ -6,18 +6,17 @@ use super::{Row, StepProblem};
 use crate::solver::kinematics::Model;
 use crate::threads;
 
-/// Relative (normal, tangential) velocities of one contact, m/s: along the tangent relative to a surface that
-/// moves.
+/// Relative (normal, tangential) velocities of one contact, m/s; v_t is relative to the surface if the surface moves.
 pub struct RowVelocities {
     /// At the end of the step.
     pub now: [f64; 2],
-    /// At its beginning.
+    /// At the beginning of the step.
     pub before: [f64; 2],
-    /// At the end if no contact acted.
+    /// At the end of the step if no contact acted.
     pub free: [f64; 2],
 }
 
-/// Visits the rows with their numbers and motions.
+/// Visits the rows with their numbers and relative velocities.
 pub fn for_each_row<M: Model>(
     problem: &StepProblem<M>,
     visit: impl FnMut(usize, &Row<M>, RowVelocities),
@@ -25,8 +24,8 @@ pub fn for_each_row<M: Model>(
     for_each_row_of(problem, 0..problem.rows.len(), visit);
 }
 
-/// Adds up what rows come to, in stretches of one length: `visit` adds a row to the sum of its stretch, `join` that of
-/// the next stretch to those before.
+/// Sums over the rows, in chunks of fixed length: `visit` adds a row to the sum of its chunk, `join` adds the sum of
+/// the next chunk to the total.
 pub(super) fn sum_of_rows<M: Model, S: Default + Send>(
     problem: &StepProblem<M>,
     visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,
@@ -55,7 +54,7 @@ fn for_each_row_of<M: Model>(
         let row = &problem.rows.fixed[number];
         let [now, before, free] =
             [&bodies.now, &bodies.before, &bodies.free].map(|bodies| row.velocity(bodies));
-        // Without contacts a driven wall would go otherwise, too.
+        // A driven wall, too, would move differently without contacts.
         let free = problem.free_part(number, row, free).unwrap_or(free);
         visit(number, row, RowVelocities { now, before, free });
     }
@@ -67,7 +66,8 @@ fn for_each_row_of<M: Model>(
     }
 }
 
-/// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
+/// Computes v_n of every row at the velocities `bodies`, relative to the wall if the wall moves, m/s. Clears `speeds`
+/// first.
 pub fn relative_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &[M::Body<f64>],

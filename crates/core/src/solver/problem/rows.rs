@@ -1,18 +1,18 @@
-//! The bodies of a step's problem, and one row a contact, in the order of the sweep.
+//! The bodies of a step's problem, and its rows, one per contact, in the order of the sweep.
 
 use std::ops::{Deref, DerefMut};
 
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 
-/// The bodies of a step, one a grain.
+/// The bodies of a step, one per grain.
 #[derive(Clone, Debug)]
 pub struct Bodies<M: Model> {
-    /// As the rows' impulses move them.
+    /// Velocities with the rows' impulses.
     pub now: Vec<M::Body<f64>>,
-    /// At the beginning of the step.
+    /// Velocities at the beginning of the step.
     pub before: Vec<M::Body<f64>>,
-    /// At the end of the step if no contact acted.
+    /// Velocities at the end of the step if no contact acted.
     pub free: Vec<M::Body<f64>>,
     /// Masses, kg.
     pub masses: Vec<f64>,
@@ -27,10 +27,10 @@ impl<M: Model> Default for Bodies<M> {
     }
 }
 
-/// What a row against a fixed body and a row between grains have in common.
+/// The common part of a row against a fixed body and a row between grains.
 ///
-/// Impulses are reduced ones, λ = P/m_ij (see `solver::kinematics` and `contact::law`). Plain data: a
-/// problem shows its rows and takes none.
+/// Impulses are reduced impulses, λ = P/m_ij (see `solver::kinematics` and `contact::law`). This is plain data: a
+/// problem shows its rows and does not take rows from outside.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Row<M: Model> {
@@ -40,8 +40,8 @@ pub struct Row<M: Model> {
     pub j: u32,
     /// n, from j to i.
     pub normal: M::Normal<f64>,
-    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
-    /// the speed of a wall that comes (`problem::walls`).
+    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 below the threshold, minus the speed of an
+    /// approaching wall (`problem::walls`).
     pub restitution_velocity: f64,
     /// σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
@@ -57,9 +57,9 @@ pub struct Row<M: Model> {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct FixedRow<M: Model> {
-    /// What every row has.
+    /// The common part of a row.
     pub row: Row<M>,
-    /// How fast the body's surface goes along t, m/s. The law's v_t is relative to it.
+    /// Speed of the body's surface along t, m/s. The law's v_t is relative to it.
     pub surface_speed: f64,
 }
 
@@ -67,7 +67,7 @@ pub struct FixedRow<M: Model> {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct PairRow<M: Model> {
-    /// What every row has.
+    /// The common part of a row.
     pub row: Row<M>,
     /// g_i = m_ij/m_i.
     pub share: f64,
@@ -105,8 +105,8 @@ impl<M: Model> Row<M> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// (v_n, v_t) of the grain, m/s. v_t is relative to the body's surface. v_n is relative to a body at
-    /// rest, since the speed of a wall that comes is in `restitution_velocity`.
+    /// (v_n, v_t) of the grain, m/s. v_t is relative to the body's surface. v_n is relative to a body at rest, because
+    /// the speed of an approaching wall is in `restitution_velocity`.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         let [normal, tangential] = M::velocity(self.normal, &bodies[self.i as usize]);
@@ -122,33 +122,33 @@ impl<M: Model> PairRow<M> {
     }
 }
 
-/// The rows of a step. They are numbered through: first those against fixed bodies, then those between
-/// grains, each in the order of the sweep (`problem::order`).
+/// The rows of a step. Their numbers count the rows against fixed bodies first, then the rows between grains, each in
+/// the order of the sweep (`problem::order`).
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows<M: Model> {
     /// Rows against fixed bodies.
     pub fixed: Vec<FixedRow<M>>,
     /// Rows between grains.
     pub pairs: Vec<PairRow<M>>,
-    /// The contact behind each row.
+    /// The contact of each row.
     pub contacts: Vec<u32>,
-    /// The capture speed of each row, m/s, where rows differ in it (law `range`); else empty. Sweeps do
-    /// not need it: they see σ alone.
+    /// The capture speed of each row, m/s, if rows have different ones (law `range`); else empty. Sweeps do not need it
+    /// because they use σ alone.
     pub captures: Vec<f64>,
 }
 
 impl<M: Model> ContactRows<M> {
-    /// How many there are.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.fixed.len() + self.pairs.len()
     }
 
-    /// True where there are none.
+    /// Returns true if there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Drops all rows.
+    /// Removes all rows.
     pub(crate) fn clear(&mut self) {
         self.fixed.clear();
         self.pairs.clear();
@@ -156,24 +156,24 @@ impl<M: Model> ContactRows<M> {
         self.captures.clear();
     }
 
-    /// The rows by their numbers.
+    /// The rows in the order of their numbers.
     pub fn iter(&self) -> impl Iterator<Item = &Row<M>> {
         self.fixed.iter().map(|row| &row.row).chain(self.pairs.iter().map(|row| &row.row))
     }
 
-    /// The same, to be changed.
+    /// Mutable references to the rows in the order of their numbers.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<M>> {
         let fixed = self.fixed.iter_mut().map(|row| &mut row.row);
         fixed.chain(self.pairs.iter_mut().map(|row| &mut row.row))
     }
 
-    /// True where the row of a number is one between grains.
+    /// Returns true if row `number` is between grains.
     #[inline(always)]
     pub fn is_pair(&self, number: usize) -> bool {
         number >= self.fixed.len()
     }
 
-    /// The row of a number.
+    /// Row `number`.
     pub(crate) fn get(&self, number: usize) -> &Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &self.fixed[number],
@@ -181,7 +181,7 @@ impl<M: Model> ContactRows<M> {
         }
     }
 
-    /// The same, to be changed.
+    /// Row `number`, mutable.
     pub(crate) fn get_mut(&mut self, number: usize) -> &mut Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &mut self.fixed[number],
@@ -189,26 +189,26 @@ impl<M: Model> ContactRows<M> {
         }
     }
 
-    /// g_i of the row of a number; 1 against a fixed body.
+    /// g_i of row `number`; 1 against a fixed body.
     #[inline(always)]
     pub(crate) fn share(&self, number: usize) -> f64 {
         number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
     }
 
-    /// How fast the surface behind the row of a number goes along t, m/s; 0 between grains.
+    /// Speed along t of the surface behind row `number`, m/s; 0 between grains.
     #[inline(always)]
     pub(crate) fn surface_speed(&self, number: usize) -> f64 {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
     }
 
-    /// The capture speed of the row of a number, m/s: under a law, where rows do not differ in it.
+    /// The capture speed of row `number`, m/s: its own, or that of `law` if all rows have the same.
     #[inline(always)]
     pub(super) fn capture(&self, number: usize, law: &ContactLaw) -> f64 {
         if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
     }
 
-    /// Adds a copy of row `number` of others, changed by `change`. In the place of the contact behind it stands
-    /// that number.
+    /// Adds a copy of row `number` of `others`, modified by `change`. The copy's entry in `contacts` is `number`, not
+    /// the contact.
     pub(crate) fn push_copy(
         &mut self,
         others: &Self,
@@ -229,7 +229,7 @@ impl<M: Model> ContactRows<M> {
         self.contacts.push(number as u32);
     }
 
-    /// Copies (σ, λ_t) of all rows, m/s; `impulses` is cleared first.
+    /// Copies (σ, λ_t) of all rows, m/s. Clears `impulses` first.
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));

@@ -1,38 +1,42 @@
-//! How far the velocities of a step are from those that are asked for.
+//! Estimated distance of the velocities of a step from those of its solution.
 //!
-//! **The gap.** With impulses p that are allowed and the velocities V that they make, let w and v of each contact be those
-//! of `problem::friction` and z ≥ 0 what w lacks of the allowed ones: w + z ≥ 0 within bounds of friction g,
-//! w + s + z ≥ μ|v| on the cone. V solves the dual of a problem in which z is added to w, and there the two energies differ
-//! by
+//! **The gap.** Let p be allowed impulses and V the velocities that they make, with w and v of each contact as in
+//! `problem::friction`. Let z ≥ 0 be the shortfall of w, the least value with w + z ≥ 0 within friction bounds g, or
+//! w + s + z ≥ μ|v| on the cone. V solves the dual of a problem in which z is added to w. The two energies of that
+//! problem differ by
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
 //!
-//! each term ≥ 0. Since (p − p*)·H(V − V*) is ‖V − V*‖²_M, with p* and V* those of the solution, and no contact there lacks
-//! anything, ‖V − V*‖²_M is at most that sum and Σ m_ij z(σ* − σ). Nobody knows σ*. It is taken for no more than 2σ + z, twice
-//! the present impulse and what would end the lack of the contact by itself. With this the gap is
+//! each term ≥ 0. Let p* and V* be the impulses and velocities of the solution, at which no contact has a shortfall.
+//! Since (p − p*)·H(V − V*) = ‖V − V*‖²_M, ‖V − V*‖²_M is at most that difference plus Σ m_ij z(σ* − σ). σ* is not
+//! known. It is assumed to be at most 2σ + z: twice the present impulse plus the impulse that would end the contact's
+//! shortfall by itself. With this the gap is
 //!
 //! > S = Σ m_ij (σ(w + 2z) + z² + g|v| + λv)
 //!
-//! within bounds, and √S over the root of the mass of the grains that touch something is in m/s.
+//! within bounds. √S divided by the root of the mass of the grains with contacts is an error in m/s.
 //!
-//! **What lies on a contact that lacks something** has to move as well, and impulses that are still 0 do not show it: where
-//! a column has just begun to fall, only its lowest disc closes on anything. So let all grains move in one way that ends
-//! such lacks: by b along the mean normal u of the contacts with fixed bodies, b the root mean square of their z/(n·u), and
-//! away from their centre at the rate a/d, a the root mean square of z among grains. The end of what is L diameters long moves by
+//! **Grains that rest on a contact with a shortfall** have to move as well, and impulses that are still 0 do not show
+//! this: when a column has just begun to fall, only its lowest disc closes on anything. So consider one motion of all
+//! grains that ends such shortfalls: by b along the mean normal u of the contacts with fixed bodies, b the root mean
+//! square of their z/(n·u), and away from the grains' centre at the rate a/d, a the root mean square of z among grains.
+//! The end of a pile that is L diameters long then moves by
 //!
 //! > f = b + L a.
 //!
-//! **The error that is told** is the larger of √S and f. Where nothing lacks anything, √S is a bound for a model of
-//! friction. Otherwise it is an estimate, which was tried (`scene::law_errors`): of 574 solves of all kinds, good and bad
-//! ones, whose velocities were off by more than 1e-6 √(g d), 3.5 % were farther off than that, and it was 4.3 times their
-//! distance in the median. Smaller errors are told too large, since S is a product of an error of impulses and one of
-//! velocities: on a pile at rest 1e-4 may stand for 1e-6.
+//! **The reported error** is the larger of √S (in m/s) and f. If no contact has a shortfall, √S is a bound for a model
+//! of friction. Otherwise it is an estimate, which was tested (`scene::law_errors`) on 574 solves of all kinds, good
+//! and bad ones, whose velocities were off by more than 1e-6 √(g d). For 3.5 % of them the true error was larger than
+//! the estimate; in the median the estimate was 4.3 times the true error. Smaller errors are overestimated because S is
+//! a product of an error of impulses and an error of velocities: on a pile at rest an estimate of 1e-4 can stand for a
+//! true error of 1e-6.
 //!
-//! **Coulomb's law** has no dual. There g is the bound μσ of the impulses themselves: S is 0 where the law is solved and
-//! nowhere else. Impulses outside of their cone count by how far they are from it, λ − λ_c, with |λ − λ_c||v| + (λ − λ_c)².
+//! **Coulomb's law** has no dual. There g is the bound μσ of the impulses themselves: S is 0 if and only if the law is
+//! solved. Impulses outside their cone add their distance from it, λ − λ_c, as |λ − λ_c||v| + (λ − λ_c)².
 //!
-//! A wall that a force drives is one more body, whose mass counts in ‖V − V*‖²_M and not in the mean: w and v are relative to
-//! it as it goes now, whatever of them is its own to undo (`problem::walls`).
+//! A wall that a force drives is one more body. Its mass counts in ‖V − V*‖²_M but not in the mean; w and v are
+//! relative to the wall's present velocity, without the scaling by compliances that the natural map uses
+//! (`problem::walls`).
 
 use glam::DVec2;
 
@@ -44,27 +48,28 @@ use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Contacts with fixed bodies whose normals are less along the mean one are not opened by a way along that: the way
-/// would be ten times as long as the lack.
+/// Minimum n·u of a contact with a fixed body for its shortfall to be ended by a motion along u. At smaller values the
+/// motion would be more than ten times as long as the shortfall.
 const LEAST_ALONG: f64 = 0.1;
 
-/// How far velocities are from those that are asked for, and what that is held against.
+/// Estimated error of the velocities, and its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityError {
-    /// Of the root mean square of the velocities of the grains that touch something, weighted with mass, m/s.
+    /// Estimated root mean square error over the grains with contacts, weighted by mass, m/s.
     pub told: f64,
-    /// The root of g d, d the mean diameter, and of the mean square of what contacts undo, together, m/s.
+    /// √(g d + mean square of the velocities that contacts undo), d the mean diameter, m/s.
     pub scale: f64,
 }
 
 impl VelocityError {
-    /// True where the error is no larger than a share of the scale. Not a number is not.
+    /// Returns true if the error is at most `share` times the scale; false if it is NaN.
     pub(crate) fn is_within(self, share: f64) -> bool {
         self.told <= share * self.scale
     }
 }
 
-/// The error against what a problem is solved for: its model of friction, or Coulomb's law. 0 where nothing touches.
+/// The velocity error with respect to the law that a problem is solved for: its model of friction, or Coulomb's law. It
+/// is 0 if there are no contacts.
 pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
     let add = |sums: &mut ErrorSums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_by_model(problem, number, row, &motion);
@@ -76,7 +81,7 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
     VelocityError { told: sums.error(problem), scale }
 }
 
-/// What errors of velocities are made of.
+/// The sums that make up a velocity error.
 #[derive(Default)]
 pub(super) struct ErrorSums {
     /// S, J.
@@ -85,7 +90,7 @@ pub(super) struct ErrorSums {
     undone: f64,
     /// Σ m_ij |λ|², J.
     impulses: f64,
-    /// Σ (z/(n·u))² of contacts with fixed bodies and Σ z² of the others, (m/s)², and how many there are of each.
+    /// Σ (z/(n·u))² of contacts with fixed bodies and Σ z² of the others, (m/s)²; below, the number of each.
     lacks: [f64; 2],
     counts: [f64; 2],
 }
@@ -101,7 +106,7 @@ impl ErrorSums {
         }
     }
 
-    /// Adds a row as the model of friction judges it that the problem is solved under.
+    /// Adds a row under the model of friction that the problem is solved for.
     #[inline(always)]
     fn add_by_model<M: Model>(
         &mut self,
@@ -134,7 +139,7 @@ impl ErrorSums {
         self.add(problem, number, row, of_normal + rubbing + tangential * across, lacking);
     }
 
-    /// Adds a row as Coulomb's law judges it.
+    /// Adds a row under Coulomb's law.
     #[inline(always)]
     pub(super) fn add_by_law<M: Model>(
         &mut self,
@@ -158,7 +163,7 @@ impl ErrorSums {
         self.add(problem, number, row, of_contact, lacking);
     }
 
-    /// Adds what a row has of S over its effective mass, (m/s)², and what it lacks, m/s.
+    /// Adds a row's contribution to S divided by its effective mass, (m/s)², and its shortfall z, m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -178,12 +183,12 @@ impl ErrorSums {
         self.counts[kind] += 1.0;
     }
 
-    /// The larger of √S over the root of the mass and of f, m/s; NaN where S is NaN.
+    /// The larger of √S over the root of the mass and of f, m/s; NaN if S is NaN.
     pub(super) fn error<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
-        // What rounding left of the impulses is no gap.
+        // A gap within the rounding of the impulses counts as 0.
         let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;
         let squared = if is_rounding { 0.0 } else { self.gap / problem.touching_mass() };
-        // What rounding leaves of a gap of 0 may be negative; not a number stays none.
+        // Rounding may make a gap of 0 negative; NaN stays NaN.
         let of_gap = if squared < 0.0 { 0.0 } else { squared.sqrt() };
         let [along, between] =
             [0, 1].map(|kind| (self.lacks[kind] / self.counts[kind].max(1.0)).sqrt());

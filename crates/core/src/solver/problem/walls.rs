@@ -1,31 +1,31 @@
-//! Surfaces that move, and walls that a force drives, as the contacts of a step see them.
+//! Moving surfaces, and walls that a force drives, in the contacts of a step.
 //!
-//! **Along the normal.** Relative to a surface of speed V a grain has v_n − V. So the law's
-//! v_n + ρ v_n^{n−1} becomes v_n − V + ρ (v_n^{n−1} − V⁻): what is added to v_n is another number, and no
-//! method has to know. V⁻ is the speed that the surface begins the step with: a grain that rests on a surface which
-//! gathers speed has v_n^{n−1} = V⁻, and does not bounce.
+//! **Along the normal.** Relative to a surface of speed V a grain has v_n − V. So the law's v_n + ρ v_n^{n−1} becomes
+//! v_n − V + ρ (v_n^{n−1} − V⁻): only the term added to v_n changes, and methods need no change. V⁻ is the speed of the
+//! surface at the beginning of the step. A grain that rests on an accelerating surface has v_n^{n−1} = V⁻, so it does
+//! not bounce.
 //!
-//! **Along the tangent** the law's v_t becomes v_t − V_t, which no such number can say. A row against a fixed
-//! body has V_t where a pair has its share of the masses, which is 1 there. A sweep subtracts what lies in the
-//! row's own cache line, which changes no bit where V_t = 0.
+//! **Along the tangent** the law's v_t becomes v_t − V_t, which the added term cannot express. A row against a fixed
+//! body stores V_t at the place where a pair stores its mass ratio g_i, which is 1 against a fixed body. The sweep
+//! subtracts a number of the row's own cache line, which changes no bit if V_t = 0.
 //!
-//! **Work.** A grain's own velocity enters the work of its contacts (`problem::residual`), so what a surface does
-//! to the grains is in theirs: P_n V + P_t V_t of it is the surface's, and the rest is lost in the contact.
+//! **Work.** The work of a contact is formed with the grain's own velocity (`problem::measures`), so it contains the
+//! work of the surface on the grain, P_n V + P_t V_t. The rest is dissipated in the contact.
 //!
-//! **Driven walls.** A wall of mass M goes along a, |a| = 1, with V under a force F and a damping c V. Its
-//! contacts push it back, each by P·b with b = (a·n, a·t), so that with the damping taken at the end of the step
+//! **Driven walls.** A wall of mass M moves along a, |a| = 1, with speed V under a force F and a damping force c V.
+//! Each contact pushes it back by P·b with b = (a·n, a·t). With the damping taken at the end of the step
 //!
 //! > M (V − V⁻) = Δt (F − c V) − Σ P·b,  V = V_free − r Σ P·b,
 //! > r = 1/(M + cΔt),  V_free = r (M V⁻ + ΔtF).
 //!
-//! V is as much unknown as the velocities of grains, so a wall lighter than what it presses on never swings up,
-//! though its load then goes from contact to contact slowly, by M/m_i a sweep. In reduced impulses λ = P/m_i, and
+//! V is an unknown like the velocities of grains, so a wall that is lighter than its load does not begin to oscillate.
+//! Its load then passes only slowly from contact to contact, by M/m_i per sweep. In reduced impulses λ = P/m_i, and
 //! with κ = r m_i, a contact of grain i has
 //!
 //! > u_n = v_n − b_n V,  ∂u_n/∂λ_n = 1 + κ b_n²,  ∂u_t/∂λ_t = m_n/m_t + κ b_t²,
 //!
-//! and every other contact of the wall sees V change by −κ (b_n λ_n + b_t λ_t). Rows are told of V once a sweep, so
-//! that whatever reads them finds the velocities relative to the wall as it goes now.
+//! and for every other contact of the wall V changes by −κ (b_n λ_n + b_t λ_t). V is copied into the rows once per
+//! sweep, so that every reader of the rows gets velocities relative to the present motion of the wall.
 
 use glam::DVec2;
 
@@ -33,34 +33,34 @@ use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
 use crate::solver::kinematics::Model;
 
-/// No wall.
+/// Marks a row whose wall is not driven.
 const NONE: u32 = u32::MAX;
 
-/// How the surface of a fixed body goes where a contact touches it.
+/// Motion of the surface of a fixed body at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// The velocity of the shape there, m/s.
+    /// Velocity of the shape at the contact, m/s.
     pub velocity: DVec2,
-    /// The velocity of the shape there as the step begins, m/s.
+    /// Velocity of the shape at the contact at the beginning of the step, m/s.
     pub before: DVec2,
-    /// What the surface has besides along t, round the shape that stays, m/s.
+    /// Additional speed along t of a surface that runs around its shape while the shape stays in place, m/s.
     pub round: f64,
-    /// True where the shape is a half-space, which looks the same wherever it goes along itself.
+    /// True if the shape is a half-space, for which a motion along its surface changes nothing.
     pub is_half_space: bool,
-    /// True where the shape goes along its normal and no other way.
+    /// True if the shape moves only along its normal.
     pub is_pushed: bool,
-    /// What drives the shape, if a force does.
+    /// The driven wall, if a force drives the shape.
     pub driven: Option<DrivenBy>,
 }
 
 impl Surface {
-    /// The same where nothing rubs.
+    /// This surface for contacts without friction.
     fn smooth(self) -> Self {
         let smooth = |by: DrivenBy| DrivenBy { along: [by.along[0], 0.0], ..by };
         Self { is_pushed: true, round: 0.0, driven: self.driven.map(smooth), ..self }
     }
 
-    /// How fast it goes along n and t, m/s.
+    /// Speeds along n and t, m/s.
     #[inline]
     pub(crate) fn along(&self, normal: DVec2) -> [f64; 2] {
         let tangential = if self.is_pushed { 0.0 } else { self.velocity.dot(normal.perp()) };
@@ -68,76 +68,76 @@ impl Surface {
     }
 }
 
-/// A wall that is driven.
+/// A wall that a force drives.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenWall {
-    /// The motion of that number.
+    /// Number of its motion in the list of motions.
     pub motion: usize,
-    /// r, 1/kg.
+    /// r = 1/(M + cΔt), 1/kg.
     pub response: f64,
-    /// V⁻, m/s.
+    /// V⁻, speed at the beginning of the step, m/s.
     pub before: f64,
-    /// V_free, m/s.
+    /// V_free, speed at the end of the step if no contact acted, m/s.
     pub free: f64,
-    /// V, m/s.
+    /// V, present speed, m/s.
     pub now: f64,
 }
 
-/// What drives the wall of a contact, as the contact sees it.
+/// The driven wall of a contact, and its direction at the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenBy {
-    /// The wall of that number.
+    /// Number of the wall.
     pub wall: u32,
-    /// b.
+    /// b, the wall's direction along n and t.
     pub along: [f64; 2],
 }
 
 impl DrivenBy {
-    /// P·b of an impulse along n and t, in its unit.
+    /// P·b of an impulse along n and t, in the unit of the impulse.
     #[inline(always)]
     pub(crate) fn part_along(&self, [normal, tangential]: [f64; 2]) -> f64 {
         self.along[0] * normal + self.along[1] * tangential
     }
 }
 
-/// A row against a wall that is driven.
+/// A row against a driven wall.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenRow {
-    /// Its number among those against fixed bodies.
+    /// Number of the row among the rows against fixed bodies.
     pub number: u32,
-    /// How it hangs on its wall.
+    /// The wall and its direction.
     pub by: DrivenBy,
-    /// What is added to v_n and taken from v_t where V = 0, m/s.
+    /// The row's `restitution_velocity` and `surface_speed` at V = 0, m/s.
     pub still: [f64; 2],
-    /// How fast the wall comes along n where V = 0, m/s.
+    /// Speed of the wall along n at V = 0, m/s.
     pub speed: f64,
 }
 
-/// Fixed bodies of a problem whose surfaces move. Memory is kept between steps.
+/// Moving surfaces of a problem. Memory is kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MovingWalls {
-    /// How fast the wall of each fixed row comes along the normal, m/s; empty where no wall moves.
+    /// Speed of the wall of each row against a fixed body along n, m/s; empty if no wall moves.
     pub speeds: Vec<f64>,
-    /// How the surface behind each fixed row goes, if it moves.
+    /// The moving surface of each row against a fixed body, if it moves.
     surfaces: Vec<Option<Surface>>,
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
-    /// The rows against these.
+    /// The rows against driven walls.
     pub driven_rows: Vec<DrivenRow>,
-    /// The place of each fixed row among those, or [`NONE`]; empty where nothing is driven.
+    /// Index of each row against a fixed body in `driven_rows`, or [`NONE`]; empty if no wall is driven.
     driven_row_of: Vec<u32>,
 }
 
-/// The surfaces that a problem is prepared among.
+/// The moving surfaces of a step.
 pub struct MovingSurfaces<'a> {
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
-    /// The surface that a contact touches, if it moves.
+    /// Returns the surface that a contact touches, if that surface moves.
     pub of: &'a dyn Fn(&Contact) -> Option<Surface>,
 }
 
 impl MovingWalls {
-    /// Begins a step.
+    /// Removes all surfaces, at the beginning of a step.
     pub(super) fn clear(&mut self) {
         self.speeds.clear();
         self.surfaces.clear();
@@ -146,14 +146,14 @@ impl MovingWalls {
         self.driven_row_of.clear();
     }
 
-    /// What is known of a row against a fixed body, by its number, if that is driven.
+    /// The driven row with this number, if the wall of the row is driven.
     #[inline(always)]
     pub(crate) fn driven_row(&self, number: usize) -> Option<&DrivenRow> {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Takes note of the next row against a fixed body, of which is told what drives that, how fast it comes along n,
-    /// and what is added to v_n and taken from v_t: all with the speed before the step, m/s.
+    /// Records the next row against a fixed body: its driven wall, the wall's speed along n, and the row's
+    /// `restitution_velocity` and `surface_speed`, all at the speed at the beginning of the step, m/s.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
             return;
@@ -169,7 +169,7 @@ impl MovingWalls {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Tells the rows, which have just been made, of surfaces that move.
+    /// Adds moving surfaces to rows that have just been created.
     pub(super) fn add_surfaces(
         &mut self,
         contacts: &ContactList,
@@ -180,7 +180,7 @@ impl<M: Model> StepProblem<M> {
         walls.driven.extend(surfaces.driven);
         for (row, &index) in rows.fixed.iter_mut().zip(&rows.contacts) {
             let contact = &contacts.contacts()[index as usize];
-            // What does not rub does not mind what slides.
+            // Without friction, sliding along a surface has no effect.
             let surface = (surfaces.of)(contact).map(|surface| match M::FRICTION {
                 true => surface,
                 false => surface.smooth(),
@@ -200,7 +200,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Gives a row, by its number, another normal; how fast its wall comes along that, m/s.
+    /// Sets the normal of row `number`. Returns the speed of its wall along the new normal, m/s.
     pub(crate) fn turn_row(&mut self, number: usize, normal: DVec2) -> f64 {
         let row = self.rows.get_mut(number);
         row.normal = M::sliding(M::normal(normal.to_array()), M::slide(row.normal));
@@ -211,13 +211,13 @@ impl<M: Model> StepProblem<M> {
         speed
     }
 
-    /// How fast the wall of a row comes, by the row's number, m/s.
+    /// Speed of the wall of row `number` along n, m/s.
     #[inline(always)]
     pub fn wall_speed(&self, number: usize) -> f64 {
         self.walls.speeds.get(number).copied().unwrap_or(0.0)
     }
 
-    /// How fast the wall of a row came as the step began, by the row's number, m/s.
+    /// Speed of the wall of row `number` along n at the beginning of the step, m/s.
     pub(crate) fn wall_speed_before(&self, number: usize) -> f64 {
         if self.gives_way(number) {
             return self.wall_speed(number);
@@ -227,7 +227,7 @@ impl<M: Model> StepProblem<M> {
         surface.before.dot(DVec2::new(x, y))
     }
 
-    /// How fast the surfaces behind all rows go along t, m/s: 0 between grains; none where no surface moves.
+    /// Speeds along t of the surfaces behind all rows, m/s: 0 between grains; empty if no surface moves.
     pub fn surface_speeds(&self) -> Vec<f64> {
         if !self.has_moving_walls() {
             return Vec::new();
@@ -235,12 +235,13 @@ impl<M: Model> StepProblem<M> {
         (0..self.rows.len()).map(|number| self.rows.surface_speed(number)).collect()
     }
 
-    /// True where any surface may move.
+    /// Returns true if a surface may move.
     pub(crate) fn has_moving_walls(&self) -> bool {
         !self.walls.speeds.is_empty()
     }
 
-    /// The velocity of the fixed shape of a row that touches along a normal, m/s, as far as it shows in the gap.
+    /// Velocity of the fixed shape behind row `number`, m/s, as far as it changes the gap: of a half-space only the
+    /// part along `normal`.
     pub(crate) fn shape_velocity(&self, number: usize, normal: DVec2) -> DVec2 {
         match self.walls.surfaces.get(number) {
             Some(Some(surface)) if !surface.is_half_space => surface.velocity,
@@ -248,11 +249,12 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// The work, J, that moving surfaces do by the rows' impulses; and the part of it along the tangents, which the
-    /// rows' own velocities, being relative, leave out.
+    /// Work that moving surfaces do through the rows' impulses, J, and its tangential part. Works formed from the rows'
+    /// velocities lack the tangential part, because these velocities are relative to the surfaces.
     pub(crate) fn surface_works(&self) -> [f64; 2] {
         let [whole, along_tangents] = self.surface_works_of(self, |number| number);
-        // Rows tell of driven walls as they go at the end, but these had their mean speeds: Σ P·b ½(V − V⁻) too much.
+        // Rows contain the final speed of a driven wall, but its work is that of its mean speed: Σ P·b ½(V − V⁻) is too
+        // much.
         let surplus = |known: &DrivenRow| {
             let number = known.number as usize;
             let row = &self.rows.fixed[number];
@@ -267,7 +269,8 @@ impl<M: Model> StepProblem<M> {
         [whole - surplus, along_tangents]
     }
 
-    /// The same of rows of a part of this problem, whose numbers here `number_here` gives.
+    /// Works as in [`Self::surface_works`], of the rows of `part`, a part of this problem; `number_here` translates its
+    /// row numbers to those of this problem.
     pub(crate) fn surface_works_of(
         &self,
         part: &Self,
@@ -284,25 +287,26 @@ impl<M: Model> StepProblem<M> {
         [whole, along_tangents]
     }
 
-    /// Every row, to be changed, with how fast its wall comes, m/s: 0 where that does not move.
+    /// All rows, mutable, with the speeds of their walls along n, m/s: 0 if the wall does not move.
     pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<M>, f64)> {
         let walls = self.walls.speeds.iter().copied().chain(std::iter::repeat(0.0));
         self.rows.iter_mut().zip(walls)
     }
 
-    /// True where any wall is driven.
+    /// Returns true if a force drives any wall.
     #[inline(always)]
     pub fn is_driven(&self) -> bool {
         !self.walls.driven.is_empty()
     }
 
-    /// True where the wall of a row is driven.
+    /// Returns true if a force drives the wall of row `number`.
     #[inline(always)]
     pub(crate) fn gives_way(&self, number: usize) -> bool {
         self.walls.driven_row(number).is_some()
     }
 
-    /// Lets a row close as fast as that relative to its wall, which comes with `wall_speed`, m/s.
+    /// Lets row `number` close with up to `allowed`, m/s, relative to its wall, whose speed along n is `wall_speed`,
+    /// m/s.
     pub(crate) fn let_close(&mut self, number: usize, allowed: f64, wall_speed: f64) {
         self.rows.get_mut(number).restitution_velocity = allowed - wall_speed;
         let MovingWalls { driven_rows, driven_row_of, .. } = &mut self.walls;
@@ -312,7 +316,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// How fast the wall of a row comes along n as the step begins, and what it gains in the step, m/s.
+    /// Speed of the wall of row `number` along n at the beginning of the step, and its increase in the step, m/s.
     pub(crate) fn wall_speed_and_gain(&self, number: usize) -> [f64; 2] {
         let Some(known) = self.walls.driven_row(number) else {
             let before = self.wall_speed_before(number);
@@ -323,8 +327,9 @@ impl<M: Model> StepProblem<M> {
         [known.speed + along * wall.before, along * (wall.now - wall.before)]
     }
 
-    /// Where the wall of a row is driven: what part of its (v_n, v_t) is its grain's to undo, ρ's term included, m/s.
-    /// Its impulses undo them by as much as those of a row whose body stays undo the whole.
+    /// (v_n, v_t) of a row against a driven wall, divided by its compliance relative to that of a fixed wall,
+    /// restitution term included, m/s; `None` if the wall is not driven. The row's impulses change the result as much
+    /// as those of a row against a fixed body change its (v_n, v_t).
     #[inline(always)]
     pub(super) fn own_part(
         &self,
@@ -340,7 +345,8 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// The same of a row whose wall goes as if no contact acted, of what it tells for the wall as it goes now.
+    /// Like [`Self::own_part`], with the wall at its contact-free velocity; (v_n, v_t) are relative to its present
+    /// velocity.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
@@ -354,7 +360,7 @@ impl<M: Model> StepProblem<M> {
         self.own_part(number, row, [normal + along[0] * slower, tangential + along[1] * slower])
     }
 
-    /// Gives driven walls the velocities that the rows' impulses make, and tells the rows.
+    /// Sets driven walls to the velocities that the rows' impulses make, and updates the rows.
     pub(super) fn form_wall_velocities(&mut self) {
         for wall in &mut self.walls.driven {
             wall.now = wall.free;
@@ -369,7 +375,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Gives driven walls velocities that were found in another way, one a wall, and tells the rows.
+    /// Sets driven walls to given velocities, one per wall, and updates the rows.
     pub(crate) fn set_wall_velocities(&mut self, velocities: impl Iterator<Item = f64>) {
         for (wall, velocity) in self.walls.driven.iter_mut().zip(velocities) {
             wall.now = velocity;
@@ -377,7 +383,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Tells the rows how their walls go now.
+    /// Updates the rows to the present velocities of their walls.
     pub(crate) fn tell_of_walls(&mut self) {
         let MovingWalls { driven, driven_rows, speeds, .. } = &mut self.walls;
         for known in driven_rows {
@@ -389,7 +395,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Contacts of the wall of each row, and κ (b_n² + b_t² m_t/m_n) of the row; none where its body is not driven.
+    /// Number of contacts of each row's wall times the row's κ (b_n² + b_t² m_t/m_n); `None` if its body is not driven.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];

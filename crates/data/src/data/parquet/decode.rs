@@ -1,4 +1,4 @@
-//! Columns of Parquet files, whoever wrote them.
+//! Reads columns of Parquet files, including files of other programs.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -15,34 +15,31 @@ use crate::data::table::{Table, Values};
 use crate::error::{Error, Result};
 use crate::input::open;
 
-/// What a file must be, for messages.
+/// The expected form of a file, for messages.
 const FORM: &str = "a Parquet file whose columns are flat, not compressed or by snappy";
-/// Rows of the largest file that is read; more are a file that is damaged, or of another trade.
+/// Largest number of rows that is read. A file with more rows is damaged or does not contain discs.
 const MOST_ROWS: i64 = 1 << 28;
-/// Bytes at the end of a file that tell how long its footer is, and that it is one.
+/// Length of the end of a file, bytes: the length of its footer and the mark of Parquet.
 const MARK: u64 = 8;
-/// Bytes of a word that are of use; no kind of a grain has as many.
+/// Number of bytes of a word that are read. All words for kinds of grains are shorter.
 const MOST_OF_WORD: usize = 64;
-/// Rows that are decoded at once.
+/// Rows that are decoded together.
 const ROWS_AT_ONCE: usize = 1 << 16;
 
-/// A Parquet file that is there to be read.
+/// An open Parquet file.
 pub(in crate::data) struct ParquetFile {
     pub path: PathBuf,
     file: File,
     reader: SerializedFileReader<File>,
 }
 
-/// A column as a file has it.
+/// A decoded column.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::data) enum Decoded {
-    /// Numbers, whole or not; none where there is none.
+    /// Numbers, whole or not; `None` for missing values.
     Numbers(Vec<Option<f64>>),
-    /// Whole numbers.
     Whole(Vec<Option<i64>>),
-    /// True or false.
     Flags(Vec<Option<bool>>),
-    /// Words.
     Words(Vec<Option<String>>),
 }
 
@@ -63,13 +60,13 @@ impl ParquetFile {
         Ok(Self { path: path.to_owned(), file, reader })
     }
 
-    /// Number of its rows.
+    /// Number of rows.
     pub(in crate::data) fn rows(&self) -> usize {
-        // Within bounds, since it was opened.
+        // The number was checked when the file was opened.
         self.reader.metadata().file_metadata().num_rows() as usize
     }
 
-    /// The names of its columns.
+    /// Names of the columns.
     pub(in crate::data) fn names(&self) -> Vec<String> {
         let columns = self.reader.metadata().file_metadata().schema_descr().columns();
         columns.iter().map(|column| column.path().string()).collect()
@@ -118,7 +115,7 @@ impl ParquetFile {
         check_pages(&bytes)
     }
 
-    /// Reads the rows into a table that has none, which has all the columns of the file.
+    /// Reads the rows into an empty table. The table has all columns of the file.
     pub(in crate::data) fn read_into(&self, table: &mut Table) -> Result<()> {
         for column in &mut table.columns {
             let refuse = || {
@@ -136,7 +133,7 @@ impl ParquetFile {
     }
 }
 
-/// Looks at the footer, which ends with its length and the mark of Parquet.
+/// Checks that the file ends with the length of its footer and the mark of Parquet.
 fn check_whole(file: &File) -> std::result::Result<(), String> {
     let read = |count: u64| -> std::io::Result<Vec<u8>> {
         let (mut file, mut bytes) = (file, Vec::new());
@@ -153,7 +150,7 @@ fn check_whole(file: &File) -> std::result::Result<(), String> {
     check_footer(&footer, bytes)
 }
 
-/// What the crate says, in fewer words where they only repeat what kind of error it is.
+/// The message of the crate, shortened if it only repeats the kind of error.
 fn said(error: &ParquetError) -> String {
     match error {
         ParquetError::General(said) | ParquetError::NYI(said) | ParquetError::EOF(said) => {
@@ -191,12 +188,12 @@ impl Decoded {
                 all.extend(more);
                 Self::Words(all)
             }
-            // The schema is one of all groups.
+            // The schema is a tree, and groups are the inner nodes.
             (first, _) => first,
         }
     }
 
-    /// As values of the kind that `like` has; none where they are of another.
+    /// Converts to the kind of values that `like` has; `None` if the kinds differ.
     fn into_values(self, like: &Values) -> Option<Values> {
         match (self, like) {
             (Self::Numbers(values), Values::Numbers(_)) => {
@@ -244,7 +241,7 @@ fn decode(reader: ColumnReader, rows: usize) -> ParquetResult<Decoded> {
     })
 }
 
-/// The values of so many rows.
+/// The values of `rows` rows.
 fn all<T: DataType, Value>(
     mut reader: ColumnReaderImpl<T>,
     rows: usize,

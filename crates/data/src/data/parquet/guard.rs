@@ -1,8 +1,8 @@
-//! What a Parquet file says of itself, looked at before it is decoded: what the crate takes room for, or calls itself for,
-//! on no more than a file's word. A file takes no more memory than some 200 times its size, or 256 MiB where it is small.
+//! Checks a Parquet file before it is decoded, because the crate allocates memory and recurses as deep as the file
+//! tells it to. With these checks a file takes at most about 200 times its size in memory, or 256 MiB if it is small.
 //!
-//! Thrift's compact protocol (apache/thrift, doc/specs/thrift-compact-protocol.md) and what of it Parquet's headers are
-//! (apache/parquet-format, parquet.thrift).
+//! References: Thrift's compact protocol (apache/thrift, doc/specs/thrift-compact-protocol.md), and Parquet's headers
+//! in that protocol (apache/parquet-format, parquet.thrift).
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -11,21 +11,21 @@ use std::sync::Once;
 
 use crate::input::MOST_BYTES;
 
-/// Structures and lists within each other, of which a file needs eight.
+/// Largest nesting depth of structures and lists. A valid file needs eight.
 const MOST_DEPTH: usize = 16;
-/// Snappy writes 64 bytes as three, at best.
+/// Largest accepted ratio of unpacked to packed size. Snappy at best writes 64 bytes as three.
 const MOST_EXPANSION: i64 = 32;
-/// Bytes of a page that need no reason.
+/// Unpacked bytes of a page that are accepted whatever its packed size.
 const SMALL_PAGE: i64 = 4096;
-/// Rows that are read of a file that has not as many bytes: of a column that is the same everywhere a file says little.
+/// Rows that are accepted even if the file has fewer bytes, because constant columns take little space.
 const FREE_ROWS: i64 = 1 << 20;
-/// Encodings that say before their values how many there are: by lengths, and by common beginnings.
+/// Encodings that state the number of values before the values: by lengths, and by common prefixes.
 const COUNTED: [i64; 2] = [6, 7];
 
-/// Why a file is not decoded, as the rest of a sentence.
+/// The error is the reason for refusing a file, as the rest of a sentence.
 type Checked<T> = Result<T, String>;
 
-/// A value, as far as it matters here.
+/// A value, reduced to the properties that are checked.
 enum FieldValue {
     Whole(i64),
     Text,
@@ -35,8 +35,8 @@ enum FieldValue {
     Other,
 }
 
-/// What a decoder takes a value for by the number of its field, whatever kind the file says that it is of. Where the two
-/// differ, a decoder is out of step, and reads anything as anything.
+/// The type that a decoder expects for a field number, whatever type the file states. If the two differ, the decoder
+/// loses its position and misreads the rest.
 enum FieldShape {
     Whole,
     Text,
@@ -45,7 +45,7 @@ enum FieldShape {
     Plain,
     List(&'static FieldShape),
     Fields(&'static [(i64, FieldShape)]),
-    /// Of no table of discs: keys and maps.
+    /// Occurs in no table of discs: keys and maps.
     Refused,
 }
 
@@ -161,7 +161,8 @@ const PAGE_HEADER: FieldShape = Fields(&[
 ]);
 
 impl FieldShape {
-    /// Whether a value is of this shape; what a decoder does not know may be anything, and be there once.
+    /// True if a value has this shape. A field that the decoder does not know may have any type, but may occur only
+    /// once.
     fn fits(&self, value: &FieldValue) -> bool {
         match (self, value) {
             (Whole, FieldValue::Whole(_))
@@ -192,7 +193,7 @@ impl FieldValue {
     }
 }
 
-/// Bytes that are read from the front.
+/// A cursor over bytes.
 struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
@@ -237,7 +238,7 @@ impl Reader<'_> {
                 return Err("has a header of kind 0".into());
             }
             id = if head >> 4 == 0 { self.whole()? } else { id.wrapping_add(i64::from(head >> 4)) };
-            // Whether it is so is in the kind.
+            // The type contains the value of a switch.
             let value =
                 if head & 15 < 3 { FieldValue::Switch } else { self.value(head & 15, below)? };
             fields.push((id, value));
@@ -273,19 +274,19 @@ impl Reader<'_> {
     }
 }
 
-/// How deep a structure or a list may go on where it may itself be so deep.
+/// The remaining nesting depth inside a structure or list.
 fn depth_below(depth: usize) -> Checked<usize> {
     depth.checked_sub(1).ok_or_else(|| format!("has headers nested deeper than {MOST_DEPTH}"))
 }
 
-/// Looks at the footer of a file of so many bytes.
+/// Checks the footer of a file of `bytes` bytes.
 pub(super) fn check_footer(footer: &[u8], bytes: u64) -> Checked<()> {
     let footer = Reader(footer).structure(MOST_DEPTH)?;
     check_shape(&FOOTER, &footer)?;
     let Some(FieldValue::List(schema)) = footer.field(2) else {
         return Err("has no schema".into());
     };
-    // Children that are still to come, of each group that the element is in.
+    // Number of children still to come, for each open group.
     let mut open: Vec<i64> = vec![1];
     for element in schema {
         while open.last() == Some(&0) {
@@ -321,7 +322,7 @@ fn check_shape(shape: &FieldShape, header: &FieldValue) -> Checked<()> {
     shape.fits(header).then_some(()).ok_or_else(refuse)
 }
 
-/// Looks at all pages of a column; `bytes` are those of the column in the file.
+/// Checks all pages of a column; `bytes` is the column's part of the file.
 pub(super) fn check_pages(bytes: &[u8]) -> Checked<()> {
     let mut rest = Reader(bytes);
     while !rest.0.is_empty() {
@@ -348,11 +349,11 @@ pub(super) fn check_pages(bytes: &[u8]) -> Checked<()> {
 }
 
 thread_local! {
-    /// True while what panics is the crate's own affair.
+    /// True while a panic of the crate is to be caught.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Does what may panic on a file that is damaged, and says so where it does.
+/// Calls a function that may panic on a damaged file, and turns the panic into an error.
 pub(super) fn caught<T>(act: impl FnOnce() -> T) -> Checked<T> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {
@@ -364,7 +365,7 @@ pub(super) fn caught<T>(act: impl FnOnce() -> T) -> Checked<T> {
         }));
     });
     IS_CAUGHT.set(true);
-    // What is half done is dropped.
+    // An interrupted result is dropped, so no inconsistent state can be seen.
     let done = catch_unwind(AssertUnwindSafe(act));
     IS_CAUGHT.set(false);
     done.map_err(|_| "is damaged".to_owned())
@@ -384,7 +385,7 @@ mod tests {
 
     #[test]
     fn fields_that_nobody_knows_are_looked_at_once_each() {
-        // A structure whose first field is number 100, with another number than the one before each: all are switches.
+        // A structure of switches with distinct field numbers, from 100 on.
         let header = |fields: usize| [&[0x01, 200, 1][..], &vec![0x11_u8; fields]].concat();
         let secs = |fields: usize| {
             let footer = [&header(fields)[..], &[0]].concat();
@@ -395,7 +396,7 @@ mod tests {
             };
             (0..5).map(|_| look()).fold(f64::INFINITY, f64::min)
         };
-        // As many times the fields take as many times the time, and not its square.
+        // With 16 times the fields, the time grows about 16-fold, not 256-fold.
         let ratio = secs(64_000) / secs(4_000);
         assert!(ratio < 80.0, "16 times the fields took {ratio} times the time");
         let twice = check_footer(&[&header(100)[..], &[0x01, 200, 1, 0]].concat(), 200_000);

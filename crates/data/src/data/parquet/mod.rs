@@ -1,4 +1,4 @@
-//! Recordings as Parquet: a folder a table, of files that are whole.
+//! Recordings as Parquet: one folder per table, whose files are always complete.
 
 mod decode;
 mod guard;
@@ -25,13 +25,13 @@ use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::Observables;
 
-/// A part ends with the frame with which it comes to this size before compression, bytes. Larger: each
-/// frame of a small scene costs more, since the last part is written anew with it. Smaller: more files.
+/// A part ends with the frame in which it reaches this size before compression, bytes. If it is larger, each frame of a
+/// small scene costs more, because the last part is rewritten with every frame. If it is smaller, there are more files.
 const SIZE_OF_PART: usize = 256 << 10;
-/// Key of the metadata that tells units and meanings of the columns, as JSON.
+/// Key of the metadata with units and meanings of the columns, as JSON.
 const COLUMNS_KEY: &str = "columns";
-/// A column with fewer changes from row to row than this part of its rows is written as a list of what it
-/// has and places in it, which then take nearly nothing.
+/// A column that changes in fewer than 1 in `FEW_CHANGES` rows is written as a dictionary and indices, which then take
+/// almost no space.
 const FEW_CHANGES: usize = 8;
 
 /// Writes Parquet.
@@ -41,7 +41,7 @@ pub(super) struct Parquet {
 }
 
 impl Parquet {
-    /// Starts, or goes on with what is there.
+    /// Starts a recording, or opens an existing one.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let start = |table| GrowingParts::start(folder, facts, table);
         let of_frames = empty_tables_of_frames().into_iter().map(start).collect::<Result<_>>()?;
@@ -76,23 +76,23 @@ impl Format for Parquet {
     }
 }
 
-/// A table in parts. The last is written anew with each frame until it is large enough, so that a reader
-/// finds whole files at any time.
+/// A table in parts. The last part is rewritten with each frame until it is large enough, so that readers always find
+/// complete files.
 struct GrowingParts {
     folder: PathBuf,
     encoder: Encoder,
     /// Number of the part that grows.
     number: u64,
-    /// Its rows.
+    /// Rows of the growing part.
     rows: Table,
-    /// True if it has rows that are not in its file.
+    /// True if some rows are not yet in the file.
     has_news: bool,
-    /// True if there is a file: a table has one, even without rows, so that readers find its columns.
+    /// True if the file exists. A table has a file even without rows, so that readers find its columns.
     has_file: bool,
 }
 
 impl GrowingParts {
-    /// Starts with no part. `rows` has none.
+    /// Starts without parts; `rows` is an empty table.
     fn start(folder: &Path, facts: &RunFacts, rows: Table) -> Result<Self> {
         let folder = folder.join(rows.name);
         make_folder(&folder)?;
@@ -100,7 +100,7 @@ impl GrowingParts {
         Ok(Self { folder, encoder, number: 0, rows, has_news: false, has_file: false })
     }
 
-    /// Adds rows, which are not parted.
+    /// Adds rows, all to the same part.
     fn add(&mut self, rows: &Table) -> Result<()> {
         self.rows.append(rows);
         self.has_news |= !rows.is_empty();
@@ -114,10 +114,10 @@ impl GrowingParts {
         Ok(())
     }
 
-    /// Writes the part that grows.
+    /// Writes the growing part.
     ///
     /// # Errors
-    /// Names the file and what the system says; what was there before stays.
+    /// Names the file and the system's message; the old file remains.
     fn flush(&mut self) -> Result<()> {
         if !self.has_news && self.has_file {
             return Ok(());
@@ -126,16 +126,16 @@ impl GrowingParts {
         let bytes = self.encoder.encode(&self.rows).map_err(|error| Error::file(&path, error))?;
         let mut file = PendingFile::start(&path)?;
         file.write(&bytes)?;
-        // A run does not wait for the disk.
+        // The run does not wait until the disk has the data.
         file.finish(false)?;
         (self.has_news, self.has_file) = (false, true);
         Ok(())
     }
 
-    /// Checks that there are so many rows up to a step.
+    /// Checks that there are `marked` rows up to a step.
     fn check(&self, step: Option<u64>, marked: u64) -> Result<()> {
         let mut rows = 0;
-        // Steps rise, so all parts ahead of one that has a row up to there are wanted as a whole.
+        // Rows are sorted by step, so all parts before the first match count completely.
         for (_, path) in numbered_parts(&self.folder)?.into_iter().rev() {
             let part = ParquetFile::open(&path)?;
             let Some(Decoded::Whole(steps)) = (if rows == 0 { part.column(STEP)? } else { None })
@@ -149,11 +149,11 @@ impl GrowingParts {
         check_count(&self.folder, "rows", rows, marked)
     }
 
-    /// Drops the rows after a step, or all.
+    /// Drops the rows after a step, or all rows.
     fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
         self.rows.truncate(0);
         (self.number, self.has_news, self.has_file) = (0, false, false);
-        // From the last on, so that what is left is whole whenever this is stopped.
+        // Begins with the last part, so that the rest is complete whenever this is interrupted.
         for (number, path) in numbered_parts(&self.folder)?.into_iter().rev() {
             let mut rows = self.rows.clone();
             ParquetFile::open(&path)?.read_into(&mut rows)?;
@@ -176,14 +176,14 @@ impl GrowingParts {
     }
 }
 
-/// Writes tables of the same columns.
+/// Writes tables with the same columns.
 struct Encoder {
     schema: Arc<Type>,
     metadata: Vec<KeyValue>,
 }
 
 impl Encoder {
-    /// For tables with the columns of `table`.
+    /// An encoder for tables with the columns of `table`.
     fn new(facts: &RunFacts, table: &Table) -> ParquetResult<Self> {
         let fields = table.columns.iter().map(|column| field(column).map(Arc::new));
         let fields = fields.collect::<ParquetResult<_>>()?;
@@ -205,7 +205,7 @@ impl Encoder {
             .set_compression(Compression::SNAPPY)
             .set_dictionary_enabled(false)
             .set_statistics_enabled(EnabledStatistics::Chunk)
-            // A file is one group of rows, read as a whole.
+            // A file is a single row group, which is always read as a whole.
             .set_offset_index_disabled(true);
         let properties = table.columns.iter().fold(properties, packed);
         let mut bytes = Vec::with_capacity(table.size() + self.size_of_metadata());
@@ -213,7 +213,7 @@ impl Encoder {
         let mut file = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties.build()))?;
         let mut rows = file.next_row_group()?;
         for column in &table.columns {
-            // There are as many as in the schema, which was made of the same columns.
+            // The table has as many columns as the schema, which was made from it.
             let Some(mut writer) = rows.next_column()? else { break };
             write(&mut writer, &column.values)?;
             writer.close()?;
@@ -247,7 +247,7 @@ fn field(column: &Column) -> ParquetResult<Type> {
     field.build()
 }
 
-/// Says how a column is packed.
+/// Sets the encoding of a column.
 fn packed(properties: WriterPropertiesBuilder, column: &Column) -> WriterPropertiesBuilder {
     let path = ColumnPath::from(column.name);
     let few_changes = match &column.values {
@@ -259,8 +259,8 @@ fn packed(properties: WriterPropertiesBuilder, column: &Column) -> WriterPropert
         Values::Counts(_) => {
             return properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED);
         }
-        // The first and the last word by the alphabet tell readers nothing, and comparing all words took
-        // a sixth of the time that a frame takes.
+        // The alphabetically first and last word are of no use to readers, and comparing all words took a sixth of the
+        // time of a frame.
         Values::Words { .. } => {
             let without = EnabledStatistics::None;
             return properties
@@ -297,7 +297,7 @@ fn write(writer: &mut SerializedColumnWriter<'_>, values: &Values) -> ParquetRes
     Ok(())
 }
 
-/// Which rows have a value.
+/// Definition levels: 1 for a row with a value, 0 without.
 fn levels<T>(values: &[Option<T>]) -> Vec<i16> {
     values.iter().map(|value| i16::from(value.is_some())).collect()
 }

@@ -1,5 +1,5 @@
-//! Discs as CSV: header `x,y,radius` and, where there are any, `vx,vy,omega` and what else a recording's
-//! grains have; SI units; lines that start with `#` are comments.
+//! Discs as CSV in SI units: the header `x,y,radius`, optionally `vx,vy,omega`, and other columns of a recording's
+//! grains. Lines that start with `#` are comments.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read};
@@ -15,31 +15,31 @@ use crate::data::csv::COMMENT;
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
 
-/// What a file of discs must be, for messages.
+/// The expected form of a file of discs, for messages.
 const FORM: &str = "a CSV of discs: a header line x,y,radius, with vx,vy,omega where they move, and as \
                     many numbers in each line below";
 
-/// Characters of a header that a message shows.
+/// Largest number of characters of a header in a message.
 const MOST_SHOWN: usize = 80;
 
 /// Reads discs from the text of a CSV file; `path` is for messages.
 ///
 /// # Errors
-/// Where a line is none; the message names it.
+/// If a line is not a disc; the message names the line.
 pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
     CsvFile { path, wanted: None, open: || Ok(text.as_bytes()) }.read()
 }
 
-/// Reads the moment of a step, or the last one.
+/// Reads the moment of a step, or the last moment.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     CsvFile { path, wanted: step, open: || open(path, FORM) }.read()
 }
 
-/// A file that is being read.
+/// A CSV file and the requested step.
 struct CsvFile<'a, Open> {
     path: &'a Path,
     wanted: Option<u64>,
-    /// Opens it: once to be read, and once more where a message is to name a line.
+    /// Opens the file: once to read it, and again if a message must name a line.
     open: Open,
 }
 
@@ -126,7 +126,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
         for ((number, place), name) in numbers.iter_mut().zip(places.numbers).zip(NUMBERS) {
             let Some(place) = place else { continue };
             let said = record.get(place).unwrap_or_default();
-            // Fixed discs of a recording have no mass.
+            // Fixed discs have no mass.
             if name == "mass" && said.is_empty() {
                 continue;
             }
@@ -151,8 +151,8 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
         Error::file(self.path, format!("{}: {reason}", self.line_at(byte_of(record))))
     }
 
-    /// Which line the record is that was read from a byte on: the reader's own place is before the blank
-    /// lines and comments that it skipped.
+    /// The number of the line of the record that begins at or after this byte. The reader's own position is before the
+    /// blank lines and comments that it skipped.
     fn line_at(&self, byte: u64) -> String {
         let Ok(source) = (self.open)() else { return "a line".to_owned() };
         let mut start = 0;
@@ -169,7 +169,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
     }
 }
 
-/// How to mend a header line that names none of the columns, for messages.
+/// A hint for repairing a header line that names none of the columns, for messages.
 fn way_out(found: &[String]) -> &'static str {
     let all = |is_so: &dyn Fn(&str) -> bool| !found.is_empty() && found.iter().all(|it| is_so(it));
     if all(&|it| it.parse::<f64>().is_ok()) {

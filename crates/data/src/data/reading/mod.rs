@@ -1,4 +1,4 @@
-//! Grains out of files: those that recordings have, and lists of discs made elsewhere.
+//! Reads grains from recordings and from lists of discs made elsewhere.
 
 mod csv;
 #[cfg(feature = "data")]
@@ -23,29 +23,29 @@ use super::{lammps, vtk};
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
 
-/// What is read, for messages.
+/// The expected form of a file, for messages.
 const FORM: &str = "a file of discs (CSV or Parquet), or a folder that --data wrote as either";
-/// How Parquet files begin.
+/// First bytes of a Parquet file.
 const PARQUET: &[u8] = b"PAR1";
-/// How files begin that are written, but not read, and what they are.
+/// First bytes of files that Slump writes but does not read, with the names of their formats.
 const WRITTEN_ALONE: [(&[u8], &str); 3] =
     [(b"ITEM:", "a LAMMPS dump"), (b"<?xml", "a file of VTK"), (b"<VTKFile", "a file of VTK")];
-/// Bytes of the longest of these.
+/// Length of the longest of these beginnings, bytes.
 const LONGEST_BEGINNING: u64 = 8;
 
-/// Reads the grains of a file, or of a recording's folder, as CSV or Parquet. Where it has several moments, the last
-/// is taken, or that of `step`.
+/// Reads the grains of a file, or of a recording's folder, as CSV or Parquet. If there are several moments, reads that
+/// of `step`, or the last one.
 ///
 /// # Errors
-/// Where the file cannot be read or is of another format, has no such step, lacks a column, or a row is none; the
-/// message names the row.
+/// If the file cannot be read or is of another format, has no such step, or lacks a column, or if a row is not a disc;
+/// the message names the row.
 pub fn read_grains(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     let there = std::fs::metadata(path).map_err(|error| Error::unread(path, error, FORM))?;
     if there.is_dir() { read_folder(path, step) } else { read_file(path, step) }
 }
 
 fn read_folder(folder: &Path, step: Option<u64>) -> Result<RecordedGrains> {
-    // Frames that are not yet in every format are none.
+    // A frame counts only once it has been written in every format.
     let wanted = step.map_or_else(|| last_step(folder), |step| Ok(Some(step)));
     for parts_of in [&folder.join(empty_grains().name), folder] {
         let parts = numbered_parts(parts_of)?;
@@ -77,7 +77,7 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     if let Some((_, what)) = WRITTEN_ALONE.iter().find(|(start, _)| beginning.starts_with(start)) {
         return Err(Error::file(path, format!("is {what}, but must be {FORM}")));
     }
-    // Of a table that grows, a frame may be cut.
+    // The last frame of a growing table may be incomplete.
     let recording = path.parent().and_then(Path::parent);
     let wanted = match (step, recording) {
         (None, Some(recording)) => last_step(recording)?,
@@ -86,7 +86,7 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     csv::read(path, wanted)
 }
 
-/// The step of the last frame of the recording in a folder; none where no such thing is told.
+/// The step of the last frame of the recording in a folder; `None` if it is unknown.
 fn last_step(folder: &Path) -> Result<Option<u64>> {
     let path = folder.join(FRAMES);
     let Ok(file) = open(&path, FORM) else { return Ok(None) };
@@ -97,7 +97,7 @@ fn last_step(folder: &Path) -> Result<Option<u64>> {
     let mut last = None;
     for row in rows.records() {
         let row = row.map_err(|error| Error::unread(&path, error, "the frames of a recording"))?;
-        // A row that a kill cut short is none.
+        // A row that was cut short by a kill does not count.
         last = row.get(0).filter(|_| row.len() == 3).and_then(|step| step.parse().ok()).or(last);
     }
     Ok(last)
@@ -113,8 +113,8 @@ fn read_parts(
     Err(Error::file(path, reason))
 }
 
-/// The discs of columns by those names that recordings give them: numbers, and where they are there the
-/// counts `id` and the words `kind`. `what` they are of is for messages.
+/// The discs in columns with the names of a recording: numbers and, if present, the counts `id` and the words `kind`.
+/// `what` is the name of the source in messages.
 ///
 /// ```
 /// use slump_data::data::{Values, grains_of};
@@ -129,8 +129,7 @@ fn read_parts(
 /// ```
 ///
 /// # Errors
-/// Where a column is missing, unknown, of another length or of other values, or a row is no disc; the message
-/// names it.
+/// If a column is missing, unknown, of another length or of another type, or a row is not a disc; the message names it.
 pub fn grains_of(what: &Path, columns: &[(String, Values)]) -> Result<RecordedGrains> {
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     check_names(what, &names)?;

@@ -1,4 +1,4 @@
-//! Discs out of Parquet.
+//! Reads discs from Parquet.
 
 use std::path::{Path, PathBuf};
 
@@ -8,17 +8,17 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Rows of a file that a place can tell apart.
+/// Largest number of rows whose places can be distinguished.
 const MOST_ROWS: u64 = 1 << 32;
 
-/// Reads the moment of a step, or the last one, from the parts of a table, in their order.
+/// Reads the moment of a step, or the last moment, from the parts of a table, in their order.
 pub(super) fn read_parts(
     path: &Path,
     parts: &[(u64, PathBuf)],
     step: Option<u64>,
 ) -> Result<RecordedGrains> {
     let (mut known, mut rows, mut wanted) = (Vec::new(), Vec::new(), step);
-    // The last moment is in the last part, and one that is asked for most often near it.
+    // The last moment is in the last part, and a requested moment is usually near it.
     for (index, (_, part)) in parts.iter().enumerate().rev() {
         let table = ParquetFile::open(part)?;
         check_names(part, &table.names())?;
@@ -26,7 +26,7 @@ pub(super) fn read_parts(
         wanted = wanted.or(steps.as_ref().and_then(|steps| steps.iter().copied().max()));
         let is_wanted = |row: &usize| match (&steps, wanted) {
             (Some(steps), Some(wanted)) => steps[*row] == wanted,
-            // A file without steps has one moment.
+            // A file without steps has a single moment.
             (None, _) => step.is_none(),
             (Some(_), None) => false,
         };
@@ -51,7 +51,7 @@ pub(super) fn read_parts(
 }
 
 impl ParquetFile {
-    /// A column of whole numbers ≥ 0, where there is one.
+    /// A column of whole numbers ≥ 0, if it exists.
     fn whole(&self, name: &str) -> Result<Option<Vec<u64>>> {
         let allowed = "a whole number ≥ 0";
         let of = |(row, value): (usize, Option<i64>)| {

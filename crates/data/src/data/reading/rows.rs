@@ -1,4 +1,4 @@
-//! Rows of a file of discs, and the discs that they are.
+//! Rows of a file of discs, and their conversion to discs.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -9,16 +9,16 @@ use crate::data::columns::{FIXED, GRAIN, KINDS, LOST, empty_grains};
 use crate::error::{Error, Result};
 use crate::world::{Disc, Grain};
 
-/// Columns without which there are no discs.
+/// Columns that every file of discs needs.
 const NEEDED: [&str; 3] = ["x", "y", "radius"];
-/// The columns of numbers that are read, mass last.
+/// The numeric columns that are read, mass last.
 pub(super) const NUMBERS: [&str; 7] = ["x", "y", "radius", "vx", "vy", "omega", "mass"];
-/// The numbers of columns that are left out. A mass that is NaN is not given.
+/// The defaults for missing columns. A mass of NaN means that it is not given.
 pub(super) const LEFT_OUT: [f64; NUMBERS.len()] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN];
-/// Relative difference of masses that counts as rounding. Smaller: masses that were written with few digits are
-/// refused; larger: a scene computes with other masses than its file says.
+/// Relative difference of masses that counts as rounding. If it is smaller, masses that were written with few digits
+/// are refused. If it is larger, a scene may use other masses than its file gives.
 const SAME_MASS: f64 = 1e-3;
-/// Steps that a message lists.
+/// Largest number of steps in a message.
 const MOST_LISTED: usize = 8;
 
 /// The discs of one moment.
@@ -28,15 +28,16 @@ pub struct RecordedGrains {
     pub grains: Vec<Grain>,
     /// The discs that do not move.
     pub fixed_discs: Vec<Disc>,
-    /// The mass of each grain over its area, kg/m², if masses are given: all grains have the same.
+    /// Mass of each grain over its area, kg/m², if masses are given. It is the same for all grains.
     pub areal_density: Option<f64>,
 }
 
 impl RecordedGrains {
-    /// The columns of numbers that they are made of. Beside them the columns `id` and `kind` are read.
+    /// The numeric columns of discs. The columns `id` and `kind` are also read.
     pub const NUMBERS: [&str; NUMBERS.len()] = NUMBERS;
 
-    /// Refuses grains that a file gives other masses than a scene of that density (kg/m²) has. `path` is for messages.
+    /// Refuses grains whose masses in a file differ from those of a scene with this areal density (kg/m²). `path` is
+    /// for messages.
     ///
     /// # Errors
     /// Names both densities.
@@ -53,29 +54,29 @@ impl RecordedGrains {
     }
 }
 
-/// True if two masses or densities differ by rounding alone. NaN is near nothing.
+/// True if two masses or densities differ only by rounding. NaN compares false.
 fn is_near(one: f64, other: f64) -> bool {
     (one - other).abs() <= SAME_MASS * other.abs()
 }
 
-/// One row of a file, not yet checked.
+/// One row of a file, before the checks.
 #[derive(Debug)]
 pub(super) struct DiscRow {
-    /// The place of the row, as the reader of the file counts.
+    /// The number of the row, as the reader of the file counts.
     pub place: u64,
     pub id: Option<u64>,
-    /// The word of the column `kind`; a grain if there is none.
+    /// The word in the column `kind`. Without the column, the row is a grain.
     pub kind: Option<String>,
     /// In the order of [`NUMBERS`].
     pub numbers: [f64; NUMBERS.len()],
 }
 
-/// True if all columns are there that discs need.
+/// True if all columns are present that discs need.
 pub(super) fn has_needed(names: &[String]) -> bool {
     NEEDED.iter().all(|needed| names.iter().any(|name| name == needed))
 }
 
-/// Refuses a file that lacks a column, or has one that nothing is known of.
+/// Refuses a file that lacks a column, or has an unknown one.
 pub(super) fn check_names(path: &Path, names: &[String]) -> Result<()> {
     if !has_needed(names) {
         let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
@@ -88,7 +89,7 @@ pub(super) fn check_names(path: &Path, names: &[String]) -> Result<()> {
     Err(Error::file(path, reason))
 }
 
-/// The first name that no column of grains has.
+/// The first name that is not a column of grains.
 pub(super) fn unknown_of(names: &[String]) -> Option<&String> {
     let known = empty_grains();
     names.iter().find(|name| known.column(name).is_none())
@@ -99,7 +100,7 @@ pub(super) fn known_names() -> String {
     empty_grains().columns.iter().map(|column| column.name).collect::<Vec<_>>().join(", ")
 }
 
-/// That a file has no frame of a step, but those of `known`, rising.
+/// Error for a file that has no frame of a step, only the steps `known`, in ascending order.
 pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
     let file = path.display();
     let allowed = match known {
@@ -116,7 +117,7 @@ pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
     Error::value("initial-step", step, allowed)
 }
 
-/// The discs of rows. `place` gives the file of a row, and its place there: `line 3`.
+/// Converts rows to discs. `place` gives the file of a row and its place in the file: `line 3`.
 pub(super) fn discs_of_rows(
     path: &Path,
     rows: Vec<DiscRow>,
@@ -140,7 +141,7 @@ pub(super) fn discs_of_rows(
             let (_, other) = place(other);
             return Err(refuse(format!("id is {id}, but must be another than in {other}")));
         }
-        // A lost grain may be anywhere, and is not to come back.
+        // A lost grain may be anywhere and is not read.
         if kind == KINDS[LOST] {
             continue;
         }
@@ -188,7 +189,7 @@ pub(super) fn discs_of_rows(
     Ok(RecordedGrains { grains, fixed_discs, areal_density })
 }
 
-/// Sorts by ids, and keeps the order if there are none.
+/// Sorts by ids; without ids, keeps the order.
 fn by_their_ids<T>(mut discs: Vec<(Option<u64>, T)>) -> Vec<T> {
     discs.sort_by_key(|(id, _)| *id);
     discs.into_iter().map(|(_, disc)| disc).collect()

@@ -1,8 +1,8 @@
 //! Smoothed fields as an image.
 //!
-//! Frames of a recording are compared with each other, so all have one smoothing width, and one grain that flies off must not
-//! make the images of all others coarser or larger. The first frame decides both: the width is a mean diameter, and fields
-//! cover the box of its grains and some room around it.
+//! Frames of a recording are compared with each other, so they all use the same smoothing width, and a single grain
+//! that flies off must not make the images of all other grains coarser or larger. Width and region are therefore fixed
+//! by the first frame: the width is a mean diameter, and the fields cover the box around its grains with some margin.
 
 use std::path::Path;
 
@@ -16,19 +16,19 @@ use crate::granular::{Fields, box_of};
 use crate::output::{counted, note_line};
 use crate::sim::Moment;
 
-/// Room on each side of the grains of the first frame, in sides of their box: the most with which there are not too many
-/// cells. Less: grains that flow out of the box are soon left out; more: a grain that flies off makes larger images until it
-/// is.
+/// Margins on each side of the first frame's grains, in sides of their box. The largest margin is used that does not
+/// give too many cells. With less margin, grains that flow out of the box are soon left out. With more, a grain that
+/// flies off makes images larger for longer.
 const ROOM_IN_SIDES: [f64; 4] = [3.0, 1.0, 0.25, 0.0];
-/// Shortest side that room is measured in, in mean diameters.
+/// Least length of a side for the margin, in mean diameters.
 const LEAST_SIDE_IN_DIAMETERS: f64 = 10.0;
-/// Names of the numbers of a file that say what fields cover.
+/// Names of the numbers in a file that give the width and the region of the fields.
 const WIDTH: &str = "smoothing_width";
 const CORNERS: [&str; 4] = ["least_x", "least_y", "most_x", "most_y"];
-/// Name of the number of grains that are not in the box.
+/// Name of the number of grains outside the region.
 const LEFT_OUT: &str = "left_out_grains";
 
-/// What the fields are, for the file's `columns`.
+/// Descriptions of the fields, for the array `columns` of the file.
 const OF_FIELDS: [&str; 11] = [
     "density [kg/m^2]: smoothed with smoothing_width, m, the standard deviation along each axis; means over cells",
     "momentum [kg/(m s)]: likewise",
@@ -43,7 +43,7 @@ const OF_FIELDS: [&str; 11] = [
     "left_out_grains: outside of the box from (least_x, least_y) to (most_x, most_y), m, which fields cover",
 ];
 
-/// What the fields of a recording cover.
+/// Smoothing width and region of the fields of a recording.
 pub(super) struct FieldsBox {
     width: f64,
     corners: [DVec2; 2],
@@ -51,8 +51,8 @@ pub(super) struct FieldsBox {
 }
 
 impl FieldsBox {
-    /// That of a recording that begins with a moment. Where a smoothing of a mean diameter takes too many cells, it is twice as
-    /// wide, as often as it takes.
+    /// The region of a recording that begins with this moment. If smoothing over a mean diameter needs too many cells,
+    /// the width is doubled as often as necessary.
     fn of(moment: &Moment) -> Self {
         let grains = moment.grains.iter().filter(|grain| !grain.lost);
         let [low, high] = box_of(grains.map(|grain| grain.position));
@@ -71,7 +71,7 @@ impl FieldsBox {
         }
     }
 
-    /// That which a file says.
+    /// The region that a file states.
     pub(super) fn of_file(path: &Path) -> Option<Self> {
         let head = head_of(path).ok()?;
         let number = |name: &str| number_in(&head, name)?.parse::<f64>().ok();
@@ -80,10 +80,10 @@ impl FieldsBox {
         Some(Self { width: number(WIDTH)?, corners, has_told: false })
     }
 
-    /// Grains that are not in it.
+    /// Number of grains outside the region.
     fn left_out(&self, moment: &Moment) -> u64 {
         let [least, most] = self.corners;
-        // Borders that wrap have everything between them.
+        // Along a periodic axis, all grains are inside.
         let [along_x, along_y] = moment.surroundings.periodic.unwrap_or_default().periods();
         let is_out = |at: DVec2| {
             (along_x.is_none() && !(least.x..=most.x).contains(&at.x))
@@ -94,7 +94,7 @@ impl FieldsBox {
     }
 }
 
-/// The fields of a frame. What they cover is chosen where it is not yet.
+/// The fields of a frame. If the region is not yet known, it is chosen from this frame.
 pub(super) fn fields_file(
     frame: &Frame,
     facts: &RunFacts,

@@ -1,4 +1,4 @@
-//! The numbers at the head of a file: step and time of its frame, and the facts of its run.
+//! The numbers in the head of a file: step and time of its frame, and the facts about the run.
 
 use std::fs::File;
 use std::io::Read;
@@ -9,12 +9,12 @@ use crate::column_spec::STEP;
 use crate::data::format::{Frame, RunFacts};
 use crate::error::{Error, Result};
 
-/// What the time is called, s: VTK's readers look for this name.
+/// Name of the time, s, which VTK's readers look for.
 const TIME: &str = "TimeValue";
-/// Bytes in which a file says its numbers.
+/// Length of the beginning of a file that contains its numbers, bytes.
 const LONGEST_HEAD: u64 = 4096;
 
-/// The lines of a file that have its numbers.
+/// The lines of a file that contain its numbers.
 pub(super) fn head_of(path: &Path) -> std::io::Result<String> {
     let mut head = Vec::new();
     File::open(path)?.take(LONGEST_HEAD).read_to_end(&mut head)?;
@@ -27,7 +27,7 @@ pub(super) fn number_in<'a>(head: &'a str, name: &str) -> Option<&'a str> {
     Some(rest.split_once('>')?.1.split_once('<')?.0)
 }
 
-/// Step and time, s, of the frame that a file has.
+/// Step and time, s, of the frame in a file.
 pub(super) fn moment_of(path: &Path) -> Result<(u64, f64)> {
     let head = head_of(path).map_err(|error| Error::file(path, error))?;
     let step = number_in(&head, STEP).and_then(|number| number.parse().ok());

@@ -1,13 +1,14 @@
-//! For ParaView and all that reads VTK's files: `vtk/grains.pvd` and `vtk/contacts.pvd`, each a series of
-//! one `.vtp` a frame. Grains are points with a radius, contacts lines from centre to centre, or to the
-//! touched point of a boundary. `fields/fields.pvd`, a format of its own, is a series of images (`.vti`): the cells of a
-//! grid, with smoothed fields ([`Fields`]).
+//! Files for ParaView and other readers of VTK: `vtk/grains.pvd` and `vtk/contacts.pvd`, each a series with one `.vtp`
+//! file per frame. Grains are points with a radius. Contacts are lines from centre to centre, or to the touched point
+//! of a boundary. `fields/fields.pvd`, a separate format, is a series of images (`.vti`) of smoothed fields on a grid
+//! ([`Fields`]).
 //!
-//! Arrays have the names of the tables' columns. Two columns that are one vector are one array, `velocity`,
-//! `normal`, `force` or `point`, with the columns' names for its components: VTK's vectors are in space. Words are
-//! numbers, since nothing is coloured by words; `NAME_words`, an array of the file as a whole, has the
-//! words in the order of the numbers, `columns` what each column is and its unit, `about` the run. What is
-//! measured of the whole pile is there too, as `pile_NAME`, and what walls do, with a value a wall, as `wall_NAME`.
+//! Arrays have the names of the tables' columns. Two columns that form a vector become one array (`velocity`, `normal`,
+//! `force` or `point`) whose components have the columns' names, because VTK's vectors are three-dimensional. Words
+//! become numbers, because readers cannot colour by words. Arrays for the whole file contain the words in the order of
+//! the numbers (`NAME_words`), the description and unit of each column (`columns`), and the description of the run
+//! (`about`). They also contain the measures of the whole pile (`pile_NAME`) and, with one value per wall, those of the
+//! walls (`wall_NAME`).
 
 mod fields_file;
 mod head;
@@ -29,17 +30,17 @@ use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
 
-/// A folder of such files, which is a format.
+/// A folder of VTK files, which is a format.
 pub(super) struct VtkFolder {
     pub name: &'static str,
     kinds: &'static [VtkKind],
 }
 
-/// Files of one kind, one a frame.
+/// Files of one kind, one per frame.
 struct VtkKind {
-    /// Which their names begin with.
+    /// First part of their names.
     name: &'static str,
-    /// Which they end with.
+    /// Ending of their names.
     ending: &'static str,
     file: fn(&Frame, &RunFacts, &mut Option<FieldsBox>) -> Result<Vec<u8>>,
 }
@@ -68,11 +69,11 @@ pub(super) const FIELDS: VtkFolder = VtkFolder {
 
 const ENDING_OF_SERIES: &str = ".pvd";
 
-/// Columns that are the same in all rows of a frame.
+/// Columns that are constant in each frame.
 const OF_FRAME: [&str; 2] = ["step", "time"];
-/// In front of the names of what is measured of the whole pile, since grains have arrays of the same names.
+/// Prefix of the measures of the whole pile, because grains have arrays of the same names.
 const PILE: &str = "pile_";
-/// In front of the names of what walls do.
+/// Prefix of the columns of walls.
 const WALL: &str = "wall_";
 /// Vectors, and the columns that are their components.
 const VECTORS: [(&str, [&str; 2]); 4] = [
@@ -81,14 +82,14 @@ const VECTORS: [(&str, [&str; 2]); 4] = [
     ("point", ["x", "y"]),
     ("force", ["fx", "fy"]),
 ];
-/// What stands where a law knows no such thing as a flag.
+/// Value of a flag that the contact law does not define.
 const NEITHER: i8 = -1;
 
-/// Bytes of a slot: a part of a page, so that none lies in two, and enough for any time and name.
+/// Length of a slot, bytes. It divides a page, so that no slot lies in two pages, and is enough for any time and name.
 const SLOT: usize = 128;
-/// Bytes ahead of the first slot.
+/// Length of the text ahead of the first slot, bytes.
 const HEAD: usize = 256;
-/// Slots of a file that begins.
+/// Number of slots of a new file.
 const FIRST_SLOTS: usize = 32;
 
 const OPENING: &str = "<?xml version=\"1.0\"?>\n\
@@ -99,9 +100,9 @@ pub(super) struct Vtk {
     folder: PathBuf,
     kinds: &'static [VtkKind],
     facts: RunFacts,
-    /// Once there is a frame, or frames of before are gone on with; one of a kind.
+    /// One series for each kind; empty before the first frame of a new recording.
     series: Vec<PvdSeries>,
-    /// What fields cover, once there is a frame of them.
+    /// Region of the fields, from the first frame on.
     of_fields: Option<FieldsBox>,
 }
 
@@ -113,7 +114,7 @@ impl Vtk {
         Ok(Self { folder, kinds, facts, series: Vec::new(), of_fields: None })
     }
 
-    /// Begins the series with the files of the first frames, each with its time, s.
+    /// Creates the series with the files of the first frames, which have these times, s.
     fn begin(&mut self, times: &[f64]) -> Result<()> {
         let series = self.kinds.iter().map(|kind| {
             let files = times.iter().zip(0..).map(|(&time, number)| (time, kind.file_name(number)));
@@ -128,7 +129,7 @@ impl Vtk {
 }
 
 impl VtkFolder {
-    /// True if a file in the folder has a name of these files.
+    /// True if a name is that of a file in this folder.
     pub(super) fn has_named(&self, name: &str) -> bool {
         let is_series = |kind: &VtkKind| name.strip_prefix(kind.name) == Some(ENDING_OF_SERIES);
         self.kinds.iter().any(|kind| is_series(kind) || kind.number_of(name).is_some())
@@ -140,7 +141,7 @@ impl VtkKind {
         format!("{}_{number:06}{}", self.name, self.ending)
     }
 
-    /// The number of a file of that name, if it is of these.
+    /// The number in a file name, if the file is of this kind.
     fn number_of(&self, name: &str) -> Option<u64> {
         let digits = name.strip_prefix(self.name)?.strip_prefix('_')?.strip_suffix(self.ending)?;
         let are_digits = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -158,7 +159,7 @@ impl Format for Vtk {
             let name = kind.file_name(frame.number);
             let mut file = PendingFile::start(&self.folder.join(&name))?;
             file.write(&bytes)?;
-            // A run does not wait for the disk.
+            // The run does not wait until the disk has the data.
             file.finish(false)?;
             series.add(frame.moment.observables.time_secs, &name)?;
         }
@@ -172,7 +173,8 @@ impl Format for Vtk {
                 is_whole(&path) && moment_of(&path).is_ok_and(|(step, _)| Some(step) <= last_frame)
             };
             if let Some(lost) = (0..mark.frames).find(|number| !is_there(number)) {
-                let reason = "is missing or cut, but must be as the saved run left it; --overwrite starts the run again";
+                let reason = "is missing or cut, but must be as the saved run left it; --overwrite starts the run \
+                    again";
                 return Err(Error::file(self.folder.join(kind.file_name(lost)), reason));
             }
         }
@@ -196,7 +198,7 @@ impl Format for Vtk {
             times.push(time_secs);
         }
         if !times.is_empty() {
-            // What readers look at goes first.
+            // The series that readers open are cut first.
             self.begin(&times)?;
         }
         let first = self.folder.join(self.kinds[0].file_name(0));
@@ -233,7 +235,7 @@ fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
         .finish("normal_force")
 }
 
-/// True if a file is there up to its last word.
+/// True if a file is complete up to its last word.
 fn is_whole(path: &Path) -> bool {
     let mut end = Vec::new();
     let read = File::open(path).and_then(|mut file| {
@@ -243,8 +245,8 @@ fn is_whole(path: &Path) -> bool {
     read.is_ok() && end == vtk_file::END.as_bytes()
 }
 
-/// From centre to centre as they are now, or to the touched point of a boundary, which the branch
-/// leads to.
+/// The ends of a contact's line: the present centres, or the centre and the touched point of a boundary, which is the
+/// end of the branch vector.
 fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     let from = moment.grains[contact.grain as usize].position;
     let periodic = moment.surroundings.periodic;
@@ -259,7 +261,7 @@ fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     [from, to]
 }
 
-/// Adds all that the table has, except for the vector that says where its points are.
+/// Adds all columns of the table except the positions of its points.
 fn file(
     mut file: VtkFile,
     frame: &Frame,
@@ -289,7 +291,7 @@ fn file(
     file
 }
 
-/// Adds the columns of a table whose rows are no points, with `prefix` in front of their names.
+/// Adds the columns of a table whose rows are not points, with `prefix` before their names.
 fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
     let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     for Column { name, values, .. } in columns {
@@ -305,14 +307,14 @@ fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
             Values::Words { words, codes } => {
                 file.add_words(&name, codes.iter().map(|&code| &words[code as usize]));
             }
-            // There are none.
+            // Such tables have no flags.
             Values::Flags(_) => {}
         }
     }
     file
 }
 
-/// The numbers of a column that has a number in each row.
+/// The values of a column that has a number in every row.
 fn numbers<'a>(table: &'a Table, name: &str) -> &'a [f64] {
     match table.column(name).map(|column| &column.values) {
         Some(Values::Numbers(numbers)) => numbers,
@@ -337,22 +339,23 @@ fn add(file: &mut VtkFile, Column { name, values, .. }: &Column) {
     }
 }
 
-/// A `.pvd` file: which file shows which time, for ParaView.
+/// A `.pvd` file, which lists the file of each time for ParaView.
 ///
-/// It grows by a frame at a time and must be whole whenever somebody reads it or the program is killed.
-/// So the entries stand in slots of one length ahead of the closing tags, and what slots are free is blank:
-/// a new entry is one write within one page of memory, which no kill cuts. Where none is free the file is
-/// written anew with twice as many, which comes to a constant time a frame.
+/// It grows by one frame at a time and must be complete whenever it is read or the program is killed. Entries are
+/// therefore slots of fixed length ahead of the closing tags, and free slots are blank. A new entry is one write within
+/// one page of memory, which a kill cannot cut. If no slot is free, the file is rewritten with twice as many, so the
+/// cost per frame stays constant on average.
 struct PvdSeries {
     path: PathBuf,
     file: File,
-    /// Entries.
+    /// Number of entries.
     count: usize,
     slots: usize,
 }
 
 impl PvdSeries {
-    /// A series of files of the folder that it lies in, each with its time, s: the same as one that grew file by file.
+    /// A series of files in its own folder, each with its time, s. The result is the same as if the files had been
+    /// added one by one.
     fn of(path: PathBuf, files: &[(f64, String)]) -> Result<Self> {
         let entries: Vec<u8> =
             files.iter().flat_map(|(time_secs, name)| entry(*time_secs, name)).collect();
@@ -363,7 +366,7 @@ impl PvdSeries {
         Self::write_anew(path, &entries, slots)
     }
 
-    /// Adds the file of a time, s, which lies in the series' folder.
+    /// Adds the file of a time, s. The file is in the folder of the series.
     fn add(&mut self, time_secs: f64, file: &str) -> Result<()> {
         if self.count == self.slots {
             let text = std::fs::read(&self.path).map_err(|error| Error::file(&self.path, error))?;
@@ -392,12 +395,12 @@ impl PvdSeries {
     }
 }
 
-/// A slot that is taken.
+/// A filled slot.
 fn entry(time_secs: f64, file: &str) -> Vec<u8> {
     padded(&format!("<DataSet timestep=\"{time_secs:?}\" file=\"{file}\"/>"), SLOT)
 }
 
-/// A line of that many bytes.
+/// A line of `length` bytes.
 fn padded(text: &str, length: usize) -> Vec<u8> {
     let mut line = format!("{:1$}", text, length - 1).into_bytes();
     line.push(b'\n');

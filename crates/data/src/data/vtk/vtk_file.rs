@@ -1,15 +1,15 @@
 //! One `.vtp` or `.vti` file: points with cells on them, or the cells of a grid, and named arrays, in VTK's XML formats for
 //! polygonal data and for images with raw appended arrays (K. Martin, W. Schroeder, B. Lorensen, *VTK File Formats*).
 //!
-//! The XML says of each array where it begins behind the `_` of `AppendedData`; there its length in bytes
-//! stands as a UInt64, then its values, all in little-endian order. Nothing is rounded.
+//! The XML states for each array its offset after the `_` of `AppendedData`. There, its length in bytes is a UInt64,
+//! followed by its values, all in little-endian order. Nothing is rounded.
 
 use std::fmt::Write as _;
 
-/// What files end with.
+/// Last bytes of every file.
 pub(super) const END: &str = "\n  </AppendedData>\n</VTKFile>\n";
 
-/// A number as such files have it.
+/// A number type of VTK files.
 pub(super) trait Scalar: Copy {
     const TYPE: &'static str;
     fn put(self, bytes: &mut Vec<u8>);
@@ -28,13 +28,13 @@ macro_rules! scalars {
 
 scalars! { f64, "Float64"; i64, "Int64"; i32, "Int32"; i8, "Int8"; }
 
-/// Which cells there are, all of one kind.
+/// The cells of a file, all of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum VtkCells {
     Points,
-    /// A line from each point of even number to the next.
+    /// A line from each point with an even index to the next point.
     Lines,
-    /// Of an upright grid without points of its own: the corner of the cell with the index 0, the sides, m, and the first
+    /// An upright grid without explicit points: the corner of the cell with the index 0, the sides, m, and the first
     /// and the last corner along both axes.
     Grid {
         origin: [f64; 2],
@@ -46,17 +46,17 @@ pub(super) enum VtkCells {
 pub(super) struct VtkFile {
     cells: VtkCells,
     points: usize,
-    /// The XML of the arrays that go with the file as a whole, …
+    /// XML of the arrays for the whole file, …
     of_file: String,
-    /// … with each point, line or cell, …
+    /// … of the arrays for each point, line or cell, …
     of_rows: String,
-    /// … and of the points themselves.
+    /// … and of the positions of the points.
     of_points: String,
     appended: Vec<u8>,
 }
 
 impl VtkFile {
-    /// A file with those points, m, in the plane z = 0.
+    /// A file with these points, m, in the plane z = 0.
     pub(super) fn new(cells: VtkCells, points: impl ExactSizeIterator<Item = [f64; 2]>) -> Self {
         let mut file = Self {
             cells,
@@ -71,7 +71,7 @@ impl VtkFile {
         file
     }
 
-    /// Adds a number that goes with the file as a whole. It stands in the XML, where a person finds it.
+    /// Adds a number for the whole file. It is written into the XML, where people can read it.
     pub(super) fn add_number<N: Scalar + std::fmt::Debug>(&mut self, name: &str, number: N) {
         let _ = writeln!(
             self.of_file,
@@ -81,7 +81,7 @@ impl VtkFile {
         );
     }
 
-    /// Adds numbers that go with the file as a whole and may be none, which no text is for.
+    /// Adds an array of numbers for the whole file. It may be empty, so it is not written as text.
     pub(super) fn add_numbers<N: Scalar>(
         &mut self,
         name: &str,
@@ -97,7 +97,7 @@ impl VtkFile {
         );
     }
 
-    /// Adds words that go with the file as a whole.
+    /// Adds words for the whole file.
     pub(super) fn add_words<Word: AsRef<str>>(
         &mut self,
         name: &str,
@@ -106,7 +106,7 @@ impl VtkFile {
         let count = words.len();
         let offset = self.append_bytes(|bytes| {
             for word in words {
-                // A 0 ends a word, so none can be in it.
+                // A 0 ends a word, so it is removed from the word itself.
                 bytes.extend(word.as_ref().bytes().filter(|&byte| byte != 0).chain([0]));
             }
         });
@@ -117,13 +117,13 @@ impl VtkFile {
         );
     }
 
-    /// Adds numbers, one a point, line or cell.
+    /// Adds an array with one number per point, line or cell.
     pub(super) fn add_column<N: Scalar>(&mut self, name: &str, column: impl Iterator<Item = N>) {
         let said = self.append(name, [], column.map(|number| [number]));
         self.of_rows += &said;
     }
 
-    /// Adds vectors likewise; `parts` are the names of their first two components.
+    /// Adds an array of vectors in the same way; `parts` are the names of their first two components.
     pub(super) fn add_vectors(
         &mut self,
         name: &str,
@@ -134,7 +134,7 @@ impl VtkFile {
         self.of_rows += &said;
     }
 
-    /// The whole file. ParaView colours by `scalars` at first.
+    /// The complete file. ParaView initially colours by `scalars`.
     pub(super) fn finish(mut self, scalars: &str) -> Vec<u8> {
         let (cells, each) = match self.cells {
             VtkCells::Points => ("Verts", 1),
@@ -191,7 +191,7 @@ impl VtkFile {
         whole_file("ImageData", &body, appended)
     }
 
-    /// Appends an array; what the XML says of it. `parts` names the components where there are several.
+    /// Appends an array and returns its XML. `parts` names the components if there are several.
     fn append<N: Scalar, const EACH: usize, const NAMED: usize>(
         &mut self,
         name: &str,
@@ -212,7 +212,7 @@ impl VtkFile {
         )
     }
 
-    /// Appends what `put` puts there, behind its length; where that begins.
+    /// Appends the bytes that `put` writes, after their length, and returns their offset.
     fn append_bytes(&mut self, put: impl FnOnce(&mut Vec<u8>)) -> usize {
         let offset = self.appended.len();
         let behind_length = offset + size_of::<u64>();
@@ -235,7 +235,7 @@ fn whole_file(kind: &str, body: &str, appended: &[u8]) -> Vec<u8> {
     [head.as_bytes(), appended, END.as_bytes()].concat()
 }
 
-/// A vector of the plane as VTK has it.
+/// A plane vector with z = 0, as VTK expects.
 fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
     [x, y, 0.0]
 }

@@ -1,9 +1,9 @@
-//! Speed against accuracy of whole simulations: what a pile's slump is off by, and how many seconds
-//! are simulated in one. Steps have the restitution threshold with which nearly all of them have a solution.
+//! Speed against accuracy of whole simulations: the error of a pile's slump, and the simulated seconds per second.
+//! Steps use the restitution threshold at which nearly all of them have a solution.
 //!
-//! Against the reference *at the same Δt* a slump is off by what the solver left undone; against the
-//! reference at the finest Δt also by the time step. Piles are chaotic: two references, one solved ten times
-//! tighter, differ by the *floor*, below which no error means anything. `range` has references of its own.
+//! The difference to the reference *at the same Δt* is the error of the solver. The difference to the reference at the
+//! smallest Δt also includes the error of the time step. Piles are chaotic: two references, one of them solved ten
+//! times more tightly, differ by the *floor*, below which errors have no meaning. `range` has its own references.
 
 mod report;
 
@@ -27,23 +27,23 @@ use crate::states::States;
 use crate::statistics::{Mean, mean};
 use crate::world::ParameterChanges;
 
-/// A step gets no more sweeps: one without a solution must not take for ever.
+/// Largest number of sweeps of a step, because a step without a solution would never end.
 const MOST_SWEEPS: u32 = 5_000;
-/// Contacts slower than this many g·Δt do not bounce.
+/// Contacts slower than this, in units of g·Δt, do not bounce.
 const THRESHOLD: f64 = 2.0;
-/// Δt of the reference with the least error of the time step, s.
+/// Δt of the reference with the smallest error of the time step, s.
 const FINEST_SECS: f64 = 1e-4;
 const DURATION_SECS: f64 = 1.0;
-/// What the references are solved by, and their residuals: the second ones show the floor.
+/// Method of the references, and their residuals. The second residual measures the floor.
 const REFERENCE: Method = Method::Newton;
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
-/// A pile that slumps less than this holds.
+/// Largest slump of a pile that holds.
 const HOLDS: f64 = 0.1;
 /// The law under which the floor is measured.
 const FLOOR_LAW: Stepper = Stepper::Moreau;
-/// Steps between two looks at the clock.
+/// Steps between two checks of the clock.
 const STEPS_PER_LOOK: u64 = 16;
-/// What disturbs a run that takes longer, s, averages out within it.
+/// Disturbances average out within a run that takes longer than this, s.
 const LONG_ENOUGH_SECS: f64 = 2.0;
 const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
@@ -64,16 +64,16 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     }])
 }
 
-/// A variant with its budget: how well it is to solve its steps.
+/// A variant with its budget, the accuracy to which it solves steps.
 struct BudgetedVariant {
     charted: Change,
-    /// Whose references it is held against.
+    /// Law of the references that it is compared with.
     law: Stepper,
-    /// Its name is the budget's.
+    /// Change named after the budget.
     change: Change,
 }
 
-/// What is simulated: piles of the paper's 138 grains.
+/// The simulations: piles of the paper's 138 grains.
 struct SimulationPlan {
     time_steps_secs: Vec<f64>,
     /// (Bond, seed) of each pile.
@@ -81,12 +81,12 @@ struct SimulationPlan {
     budgeted: Vec<BudgetedVariant>,
     laws: Vec<Stepper>,
     repeats: u32,
-    /// Wall time that a simulated second may take, s.
+    /// Limit of wall time per simulated second, s.
     limit_secs: f64,
 }
 
 impl SimulationPlan {
-    /// What the law range costs is told by one good method, and by long runs.
+    /// The law `range` is represented by one good method.
     fn new(effort: Effort) -> Self {
         let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
         Self {
@@ -162,8 +162,8 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> Vec<BudgetedVariant> {
     budgeted
 }
 
-/// (Bond, seed) of each pile of 138 grains. Bond numbers are dealt out to the seeds: each is met by several, and each
-/// meets several.
+/// (Bond, seed) of each pile of 138 grains. Every Bond number occurs with several seeds, and every seed with several
+/// Bond numbers.
 fn piles(effort: Effort) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
     if effort == Effort::Quick {
@@ -177,9 +177,9 @@ fn piles(effort: Effort) -> Vec<(f64, u64)> {
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct TimedRun {
-    /// Why it did not reach its end, in words.
+    /// The reason if it did not reach its end, in words.
     failed: Option<String>,
-    /// Least of its repeats, s.
+    /// Least time of the repeats, s.
     least_secs: f64,
     simulated_secs: f64,
     steps: u64,
@@ -192,9 +192,9 @@ struct TimedRun {
     mean_overlap: f64,
 }
 
-/// Runs a scene to its end, `repeats` times for the least time, unless it takes more than `limit_secs` of the wall's
-/// time. A run that takes longer than [`LONG_ENOUGH_SECS`] is not repeated. A state that is no longer finite is an
-/// ending.
+/// Runs a scene to its end, `repeats` times for the least time, unless it takes more than `limit_secs` of wall time. A
+/// run that takes longer than [`LONG_ENOUGH_SECS`] is not repeated. A state that is no longer finite counts as a
+/// result, not as an error.
 fn timed_run(scene: &Scene, repeats: u32, limit_secs: f64) -> Result<TimedRun> {
     let mut run = timed_once(scene, limit_secs)?;
     for _ in 1..repeats {
@@ -240,17 +240,17 @@ fn timed_once(scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
 struct ReferenceCase {
     law: Stepper,
     time_step_secs: f64,
-    /// Number in `SimulationPlan::piles`.
+    /// Index in `SimulationPlan::piles`.
     pile: usize,
-    /// Number in [`TOLERANCES`].
+    /// Index in [`TOLERANCES`].
     tolerance: usize,
 }
 
-/// The references, and those that show the floor.
+/// The references, including those that measure the floor.
 struct References(Vec<(ReferenceCase, TimedRun)>);
 
 impl References {
-    /// All references of a plan. The floor is that of the charted Δt alone.
+    /// All references of a plan. The floor is only measured at the charted Δt.
     fn cases(plan: &SimulationPlan) -> Vec<ReferenceCase> {
         let mut cases = Vec::new();
         for &law in &plan.laws {
@@ -289,12 +289,12 @@ impl References {
         Ok(Self(cases.iter().zip(runs).map(|(case, run)| (case.setup, run.result)).collect()))
     }
 
-    /// Slump of that reference. There is one for every law, Δt and pile of the plan, and at the finest Δt.
+    /// Slump of a reference. The plan has one for every law, Δt and pile, and at the smallest Δt.
     fn slump(&self, wanted: ReferenceCase) -> f64 {
         self.0.iter().find(|(case, _)| *case == wanted).map_or(f64::NAN, |(_, run)| run.slump)
     }
 
-    /// Mean difference between two references, over all piles and the charted Δt.
+    /// The floor: mean difference between two references over all piles and the charted Δt.
     fn floor(&self, plan: &SimulationPlan) -> f64 {
         let mut differences = Vec::new();
         for &time_step_secs in &plan.time_steps_secs {
@@ -307,24 +307,24 @@ impl References {
         mean(&differences).mean
     }
 
-    /// Steps that were not solved as asked, and all steps.
+    /// Number of unsolved steps, and of all steps.
     fn unsolved(&self) -> [u64; 2] {
         let sum = |number: fn(&TimedRun) -> u64| self.0.iter().map(|(_, run)| number(run)).sum();
         [sum(|run| run.unconverged_steps), sum(|run| run.steps)]
     }
 }
 
-/// What one variant with one budget at one Δt comes to.
+/// Results of one variant with one budget at one Δt.
 struct SimulatedPoint<'a> {
     variant: &'a BudgetedVariant,
     time_step_secs: f64,
-    /// The runs that reached their end, pile by pile.
+    /// The completed runs, pile by pile.
     runs: Vec<TimedRun>,
     failed: Option<String>,
     speed: f64,
-    /// Mean |slump − reference| at the same Δt, and at the finest.
+    /// Mean |slump − reference| at the same Δt, and at the smallest.
     errors: [Mean; 2],
-    /// Share of piles about which it says what the reference at the same Δt says: holds or not.
+    /// Fraction of piles with the same outcome (holds or not) as the reference at the same Δt.
     verdicts: f64,
 }
 

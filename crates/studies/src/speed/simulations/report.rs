@@ -1,12 +1,12 @@
-//! How simulations are drawn and told.
+//! The chart, text and table of simulations.
 
 use super::*;
 use crate::harness::ReportTable;
 
-/// Piles from which on intervals tell something.
+/// Least number of piles for which intervals are shown.
 const TELLING: usize = 8;
 
-/// Draws what each family reaches at best for its cost: against the same Δt, and against the finest one.
+/// Charts the smallest error of each family for its cost: relative to the same Δt, and to the smallest Δt.
 pub(super) fn sheet(
     bench: &Bench,
     plan: &SimulationPlan,
@@ -15,7 +15,7 @@ pub(super) fn sheet(
 ) -> Sheet {
     let costs = || simulated.iter().filter(|point| point.failed.is_none()).map(cost);
     let least = 0.6 * costs().fold(f64::INFINITY, f64::min).min(1.0);
-    // Room for the names of curves.
+    // Space for the names of curves.
     let most = 7.0 * costs().fold(0.0, f64::max).max(10.0 * least);
     let finest = format!("Against Δt = {:e} s: step and solver", FINEST_SECS);
     let panels = [
@@ -64,7 +64,7 @@ fn with_errors(
         let name = "two references from each other";
         chart.layers.push(Layer::quiet(name, line, GREY, Look::Dashes(2)));
     }
-    // Below the floor no error is better than another.
+    // Errors below the floor are not distinguished.
     let least = floor.unwrap_or(0.0).max(LEAST_ERROR);
     let mut ends = Vec::new();
     for family in Family::ALL {
@@ -79,7 +79,7 @@ fn with_errors(
             .map(|index| {
                 let Mean { mean, low, high, .. } = good[index].errors[panel];
                 let inside = |error: f64| error.clamp(LEAST_ERROR, 1.0);
-                // Of few piles an interval is as wide as the chart.
+                // With few piles, an interval would be as wide as the chart.
                 let is_told = plan.piles.len() >= TELLING;
                 let interval = is_told.then(|| (inside(low), inside(high)));
                 Point { x: cost(good[index]), y: inside(mean), interval }

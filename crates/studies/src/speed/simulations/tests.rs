@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// References to each pile and tolerance whose slumps tell them apart.
+/// References for each pile and tolerance, with distinct slumps.
 fn made_up(plan: &SimulationPlan) -> References {
     let reference = |case: ReferenceCase| {
         let ReferenceCase { time_step_secs, pile, tolerance, .. } = case;

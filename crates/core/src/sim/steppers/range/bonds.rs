@@ -1,20 +1,18 @@
-//! How a step under the law `range` is solved (`contact::range`).
+//! Solution of a step under the law `range` (`contact::range`).
 //!
-//! A bond's bound depends on two things that only a solution tells: the speed v at which it opens once
-//! the shocks of the step have gone through, and the load J on it. So a step is solved more than once,
-//! always by the same method and through the same rows.
+//! A bond's bound depends on two quantities of the solution: the speed v at which the bond opens after the shocks of
+//! the step, and its load J. So a step is solved several times, always with the same solver and the same rows.
 //!
-//! 1. **Shocks** (`range::shocks`), in which a bond, whose force is finite, can do nothing, give v.
-//! 2. **The step** from the velocities after them, with gravity, every bond pulling with up to C₀Δt.
-//! 3. **Breaks.** The solution tells the loads. Bonds that would have been opened by δ_c before the
-//!    end of the step get the impulse of the time that they live, and the step is solved again, from
-//!    where it was, until no bond's bound falls. Bounds never rise again, so this ends.
+//! 1. **Shocks** (`range::shocks`), in which a bond has no effect because its force is finite, give v.
+//! 2. **The step** is solved from the velocities after the shocks, with gravity. Each bond may pull with up to C₀Δt.
+//! 3. **Breaks.** The solution gives the loads. Bonds that would open by δ_c before the end of the step get the
+//!    impulse of their remaining time, and the step is solved again, starting from the present solution, until no
+//!    bond's bound decreases. Bounds never increase, so this ends.
 //!
-//! **Restless bonds.** One broken bond loads the next, and a step hands a load on by one bond only; a
-//! long step tells of loads their mean alone. So a step says whether a bond is seen in it that would
-//! break if it were half as strong, and a long one is then given up (`range`). What stands is not restless,
-//! whatever load its bonds carry: where nothing moves by more than a part of δ_c, the mean of a load is
-//! the load.
+//! **Restless bonds.** A broken bond loads the next one, and a step transmits a load by one bond only; a long step
+//! also gives only the mean of a load. So a step checks for bonds that would break if they were half as strong, and a
+//! long step with such bonds is rejected (`range`). Resting grains are not restless, whatever load their bonds carry:
+//! if nothing moves by more than a fraction of δ_c, the mean of a load is the load.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,21 +24,21 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
-/// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
-/// and the next step looks at them again.
+/// Number of solutions of a step after which bounds stay unchanged. Few bonds still need a lower bound then, and the
+/// next step examines them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Strength, in that of a bond, at which a bond that would break is restless.
+/// Relative strength at which a bond that would break counts as restless.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
-/// How far what stands may go in a step, in δ_c. Larger: a load that comes slowly is not seen rising; smaller: what a
-/// solver's tolerance leaves of motion is taken for motion.
+/// Largest motion of resting grains in a step, in δ_c. If larger, a slow increase of a load is missed; if smaller,
+/// motion within the solver's tolerance counts as motion.
 const STANDING_IN_DEBONDING_DISTANCES: f64 = 1e-3;
 
-/// Part of a bound by which it has to fall to be worth another solution.
+/// Relative decrease of a bound that requires another solution.
 const FALL: f64 = 1e-6;
 
-/// What the law remembers from one step to the next.
+/// Data that the law keeps from one step to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::sim) struct RangeMemory {
@@ -48,15 +46,16 @@ pub(in crate::sim) struct RangeMemory {
     pub(super) shocks: Shocks,
     #[serde(skip)]
     lowered: Vec<(usize, f64)>,
-    /// True where bonds were about to break in the last step.
+    /// True if bonds were about to break in the last step.
     pub restless: bool,
-    /// Where a step was too long for the bonds that were about to break in it: the longest that is not, s.
+    /// The longest step, s, that is not too long for the bonds that were about to break, if the last step was too
+    /// long.
     #[serde(skip)]
     pub longest_step_secs: Option<f64>,
 }
 
-/// Solves a prepared problem, and tells the bonds what became of them. Gives what shocks, solves and bonds came to before
-/// the grains move, or the work alone where a bond breaks that may not.
+/// Solves a prepared problem and updates the bonds. Returns the results of shocks, solves and bonds before the grains
+/// move. If a bond breaks although none may, returns only the work of the solves.
 pub(super) fn solve_range<M: Model>(
     stage: &mut Stage<'_, M>,
     remembered: &mut RangeMemory,
@@ -92,23 +91,23 @@ pub(super) fn solve_range<M: Model>(
     Ok(result)
 }
 
-/// How a bond opens in a step, or in what a shock that closed it has left of the step.
+/// Opening of a bond in a step, or in the part of a step after the shock that closed the bond.
 struct BondOpening {
-    /// The part of the step.
+    /// Fraction of the step.
     part: f64,
-    /// True where a shock closed it.
+    /// True if a shock closed the bond.
     is_closed: bool,
-    /// v at the beginning, m/s.
+    /// Speed v at the beginning, m/s.
     speed: f64,
-    /// J, m/s.
+    /// Load J, m/s.
     load: f64,
     /// The bond's own impulse, m/s.
     impulse: f64,
 }
 
 impl BondOpening {
-    /// That of a row which tells of a bond. Other forces are even over the whole step, so that a part of it
-    /// has that part of them.
+    /// The opening of a row's bond. Other forces are constant over the step, so a part of the step has that part of
+    /// their impulse.
     fn of<M: Model>(
         problem: &StepProblem<M>,
         number: usize,
@@ -130,13 +129,13 @@ impl BondOpening {
         }
     }
 
-    /// (v + v^n)/2, m/s.
+    /// Mean opening speed (v + v^n)/2, m/s.
     fn opening_speed(&self) -> f64 {
         self.speed + 0.5 * (self.load + self.impulse)
     }
 }
 
-/// Tells the bonds, one a contact, what the solved step has made of them.
+/// Updates the bonds, one per contact, after a solved step.
 fn update_bonds<M: Model>(
     problem: &StepProblem<M>,
     bonds: &mut [Bond],
@@ -175,17 +174,17 @@ fn update_bonds<M: Model>(
     energies
 }
 
-/// What the bounds of a step hang on.
+/// Inputs for the bounds of a step.
 struct BondLimits<'a> {
-    /// One a contact.
+    /// One per contact.
     bonds: &'a [Bond],
     shocks: &'a Shocks,
     numbers: StepNumbers,
 }
 
 impl BondLimits<'_> {
-    /// True where bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
-    /// wall had that speed (m/s).
+    /// True if bonds are about to break in a solved step. `fastest` is the speed (m/s) of the fastest grain or wall
+    /// at its beginning.
     fn is_restless<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -200,7 +199,7 @@ impl BondLimits<'_> {
         !lowered.is_empty()
     }
 
-    /// True where nothing moved when the step began, and no pair moves apart or along in it.
+    /// True if nothing moved when the step began, and no pair separates or slides in it.
     fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;
@@ -211,8 +210,8 @@ impl BondLimits<'_> {
         speed <= still
     }
 
-    /// Finds rows with bounds (m/s) below those that they have: bonds that do not live to the end of the
-    /// step, were they of `strength` times their own.
+    /// Finds rows whose bounds (m/s) must decrease: bonds that would break before the end of the step with `strength`
+    /// times their own strength.
     fn lowered<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -243,7 +242,7 @@ impl BondLimits<'_> {
     }
 }
 
-/// Lowers the bounds of bonds that do not live to the end of the step.
+/// Lowers the bounds of bonds that break before the end of the step.
 fn shorten<M: Model>(problem: &mut StepProblem<M>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.rows.captures[number], bound);

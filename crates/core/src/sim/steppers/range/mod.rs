@@ -1,16 +1,16 @@
-//! A step under the law `range` (`contact::range`): contacts are looked for ahead, bonds are solved
-//! for (`range::bonds`), in substeps where they break or grains go far, and what overlaps is pushed out.
+//! A step under the law `range` (`contact::range`): contacts are found ahead, the step is solved with its bonds
+//! (`range::bonds`), in substeps if bonds break or grains move far, and overlaps are pushed out.
 //!
-//! **Substeps.** Two things ask for them.
+//! **Substeps** have two reasons.
 //!
-//! * A step is long against the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile whose
-//!   bonds are not, or that stands, is stepped at full length. Where bonds were restless in the step before, tried
-//!   whole or in any of its pieces, or bonded pairs circle fast ([`circling_looks_like_a_shock`]), the next one is cut
-//!   without being tried.
-//!   Where sixteen substeps are too long for a break, the step says so, and which one would not be (`sim::alarm`).
-//! * Grains go far. A contact's normal is that of the beginning of the step, so the constraint
-//!   v_n + gap/Δt ≥ 0 bars a grain from passing another one that it would have missed: without cohesion,
-//!   where only this asks for substeps, a pile slumps too little at a large Δt.
+//! * A step is long compared with the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile at rest, or
+//!   without restless bonds, is stepped at full length. If bonds were restless in the step before, as a whole or in any
+//!   of its pieces, or if bonded pairs circle fast ([`circling_looks_like_a_shock`]), the next step is divided without
+//!   a trial as a whole. If sixteen substeps are too long for a break, the step reports this, with the longest step
+//!   that would not be (`sim::alarm`).
+//! * Grains move far. A contact's normal is that of the beginning of the step, so the constraint
+//!   v_n + gap/Δt ≥ 0 stops a grain that would have passed another one. Without cohesion, when this is the only reason
+//!   for substeps, a pile would otherwise slump too little at a large Δt.
 
 mod bonds;
 mod shocks;
@@ -30,22 +30,22 @@ use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Approach, Model, SolveReport};
 
-/// Pairs within the first of these many diameters that a step could close are contacts;
-/// a pair that is to meet within the step is one up to the second.
+/// Search distances, in diameters. Pairs within the first distance that a step could close are contacts; pairs that
+/// would meet within the step are contacts up to the second distance.
 const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 
-/// Longest substep where bonds are restless, in times of a break. Larger: a load is handed on by one bond
-/// a step, so weakly bonded piles hold at a large Δt; smaller: it costs more.
+/// Longest substep with restless bonds, in times of a break. If larger, weakly bonded piles hold at a large Δt,
+/// because a load is transmitted by one bond per step; if smaller, it costs more.
 const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
 
-/// How far a grain goes in a substep, in diameters, as long as there are few enough of them. Larger: a
-/// pile slumps too little at a large Δt; smaller: it costs more.
+/// Largest motion of a grain in a substep, in diameters, unless this needs too many substeps. If larger, a pile
+/// slumps too little at a large Δt; if smaller, it costs more.
 const MOST_TRAVEL: f64 = 0.1;
 
-/// More would be a step of another order than the one asked for.
+/// Limit for the substeps. With more, the step would no longer be comparable to the one asked for.
 const MOST_SUBSTEPS: f64 = 16.0;
 
-/// How far a step that has begun has to look: the speed of the fastest tells what any grain may come to.
+/// Look-ahead of a step that has begun. The speed of the fastest grain bounds what any grain may reach.
 fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let travel = travel(state, time_step_secs);
@@ -55,24 +55,24 @@ fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     LookAhead { time_step_secs, distance, reach, in_touch: InTouch::Bonded }
 }
 
-/// How far a grain may go in a step that has begun, m.
+/// Largest possible motion of a grain in a step that has begun, m.
 fn travel(state: &State, time_step_secs: f64) -> f64 {
     (state.fastest() + 2.0 * state.largest_acceleration() * time_step_secs) * time_step_secs
 }
 
-/// How a step is cut.
+/// Division of a step into substeps.
 struct StepCut {
     substeps: u32,
-    /// True where bonded pairs circle so fast that it cannot be taken as a whole.
+    /// True if bonded pairs circle so fast that the step cannot be taken as a whole.
     circling: bool,
-    /// True where it is tried as a whole first.
+    /// True if the step is first tried as a whole.
     whole_first: bool,
-    /// The longest step (s) in whose substeps a break is seen, where this one is longer.
+    /// The longest step (s) whose substeps resolve a break, if this step is longer.
     longest_step_secs: Option<f64>,
 }
 
 impl StepCut {
-    /// Of a step that has begun, where bonds were restless to the end of the last or not.
+    /// The division of a step that has begun. `restless` tells if bonds were restless at the end of the last step.
     fn of(state: &State, settings: &Settings, restless: bool) -> Self {
         let State { world, .. } = state;
         let parameters = &settings.parameters;
@@ -96,7 +96,7 @@ impl StepCut {
     }
 }
 
-/// Takes a step: as a whole, or in substeps (see the module).
+/// Takes a step, as a whole or in substeps (see the module).
 pub(super) fn advance<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -111,7 +111,7 @@ pub(super) fn advance<M: Model>(
     if whole_first {
         match try_step(stage, settings, memory, substeps == 1) {
             Ok(result) => return result,
-            // Of what was given up the work alone counts.
+            // Of a rejected step only the work of the solves counts.
             Err(given_up) => result.report = result.report.after(given_up),
         }
     }
@@ -127,7 +127,7 @@ pub(super) fn advance<M: Model>(
     result
 }
 
-/// Sets up the first problem that is solved with the loads of the step, its shocks passed.
+/// Sets up the first problem that is solved with the loads of the step, after its shocks.
 pub(super) fn set_up<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -141,8 +141,8 @@ pub(super) fn set_up<M: Model>(
     shocks::pass(stage, &mut memory.shocks, &first);
 }
 
-/// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself;
-/// bounces are part of the shocks.
+/// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself; bounces are part
+/// of the shocks.
 pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let time_step_secs = settings.parameters.time_step_secs;
     let touch = TOUCH_IN_DIAMETERS * stage.world().mean_diameter;
@@ -151,8 +151,8 @@ pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     stage.prepare_ahead(settings, ahead, rebound);
 }
 
-/// Solves the prepared problem with its bonds and moves the grains. Fails, with what that took, where a
-/// bond breaks that may not.
+/// Solves the prepared problem with its bonds and moves the grains. Fails, with the work of the solves, if a bond
+/// breaks although none may.
 fn try_step<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -167,10 +167,10 @@ fn try_step<M: Model>(
     Ok(result)
 }
 
-/// Passes over the contacts after a step. One carries an overlap on by a layer of grains at the least.
+/// Passes over the contacts after a step. Each pass moves an overlap on by at least one layer of grains.
 const PASSES: u32 = 8;
 
-/// Moves grains that overlap apart, since bonds do not live on overlap, as far as a few passes go.
+/// Separates overlapping grains by a few passes, because bonds do not need overlap.
 pub(super) fn separate<M: Model>(state: &mut State) {
     let State { world, contacts, candidates, .. } = state;
     let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
@@ -181,23 +181,23 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     }
 }
 
-/// The part of the escape speed that turning may come to in a step. Larger: pairs that circle part too early;
-/// smaller: steps are cut in vain.
+/// Largest effect of turning in a step, as a fraction of the escape speed. If larger, circling pairs separate too
+/// early; if smaller, steps are divided in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
-/// True where a bonded pair circles so fast that a step of that length would take the turn of its normal for a shock.
-/// `pull` is C₀/m_ij, m/s², and `distance` δ_c, m.
+/// True if a bonded pair circles so fast that a step of this length would treat the turn of its normal as a shock.
+/// `pull` is C₀/m_ij, m/s², and `distance` is δ_c, m.
 ///
-/// Bonded pairs that circle each other.
-///
-/// **Why they ask for substeps.** A step takes a contact's normal from its beginning. Two grains that circle each
-/// other at a distance L with v_t turn it by v_tΔt/L in a step, and at the beginning of the next one they part with
+/// **Why such pairs need substeps.** A step takes a contact's normal from its beginning. Two grains that circle each
+/// other at a distance L with v_t turn it by v_tΔt/L in a step, and at the beginning of the next step they
+/// separate with
 ///
 /// > v = v_t²Δt/L
 ///
-/// along the new normal. That is the load v_t²/L of the circle, evenly spread over the step, but it looks like
-/// a shock that has thrown them apart, and a bond stops a shock below its escape speed √(2C₀δ_c/m_ij) alone. So a pair
-/// that its bond would hold parts where the step is long. In substeps v falls with Δt, and the escape speed does not.
+/// along the new normal. This is the load v_t²/L of the circular motion, spread evenly over the step, but it looks
+/// like a shock that has thrown them apart, and a bond only stops a shock below its escape speed √(2C₀δ_c/m_ij). So a
+/// pair that its bond would hold separates if the step is long. In substeps v decreases with Δt, and the escape speed
+/// does not.
 pub(super) fn circling_looks_like_a_shock(
     state: &State,
     time_step_secs: f64,

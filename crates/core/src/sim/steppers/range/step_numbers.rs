@@ -1,24 +1,24 @@
-//! The numbers of a step under the law `range`.
+//! Parameters of a step under the law `range`.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::settings::Settings;
 use crate::world::{Parameters, World};
 
-/// The numbers of a step that its shocks and bonds need.
+/// Parameters of a step that its shocks and bonds need.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepNumbers {
     pub parameters: Parameters,
     pub time_step_secs: f64,
     /// δ_c, m.
     pub debonding_distance: f64,
-    /// Gaps below this are none, m.
+    /// Gaps below this count as zero, m.
     pub touch: f64,
     /// g, m/s².
     gravity_magnitude: f64,
 }
 
 impl StepNumbers {
-    /// Those of a step with these settings.
+    /// The parameters of a step with these settings.
     pub(super) fn of(world: &World, settings: &Settings) -> Self {
         let parameters = settings.parameters;
         Self {

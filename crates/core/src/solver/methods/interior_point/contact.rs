@@ -1,42 +1,42 @@
-//! What the interior point knows of one contact, and its part in a Newton step.
+//! A contact in the interior point method, and its part in a Newton step.
 //!
-//! A model of friction allows impulses p = (σ, λ) with G p + h ≥ 0 (rows of G: (1, 0) for σ ≥ 0 and
-//! (κ, ±1) for the two sides of friction, κ = μ where the bound grows with σ and 0 where it lags). With
-//! slacks x = G p + h and multipliers y, the solution has
+//! A model of friction allows impulses p = (σ, λ) with G p + h ≥ 0. The rows of G are (1, 0) for σ ≥ 0 and (κ, ±1) for
+//! the two sides of friction; κ = μ if the bound grows with σ, and κ = 0 if the bound is lagged. With slacks
+//! x = G p + h and multipliers y, the solution satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
-//! w with what is added to v_n, and A = G but in Coulomb's law, where the sides of friction do not push the
-//! normal velocity. A Newton step for x_k y_k = e_k leaves per contact, with h the change of (v_n, v_t) and
-//! D = diag(y/x),
+//! where w includes the term added to v_n. A = G, except in Coulomb's law, where the sides of friction do not push
+//! along the normal. With h now the change of (v_n, v_t) and D = diag(y/x), a Newton step for x_k y_k = e_k gives for
+//! each contact
 //!
 //! > S δp = b − h,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
 //! > δx = G δp,  δy = e/x − y − D δx,
 //!
-//! ε a small compliance that keeps S regular. It changes the path and not where it ends. On the cone, whose two
-//! slacks can take the place of p, S is diagonal in them.
+//! with a small compliance ε that keeps S regular. ε changes the path but not its end. On the cone, the two slacks can
+//! replace p as variables, and S is diagonal in them.
 //!
-//! Slacks are numbers of their own, right from the start and changed as the impulses are: formed anew from them,
-//! or changed by the difference of what they change by, a small slack would be what rounding leaves. For the same
-//! reason velocity and change are taken from the push one after the other.
+//! Slacks are separate variables with their own start values and steps. If they were recomputed from the impulses, or
+//! updated by a difference of two changes, a small slack would be only rounding error. For the same reason velocity and
+//! change are subtracted from the push one after the other.
 
 use crate::contact::law;
 
-/// Slacks of a contact: of σ ≥ 0, and of the two sides of friction.
+/// Number of slacks of a contact: one for σ ≥ 0, and two for the sides of friction.
 pub(super) const PAIRS: usize = 3;
 
-/// Which impulses a model of friction allows.
+/// The set of impulses that a model of friction allows.
 pub(super) trait Shape {
-    /// The first and the end of the slacks that it has.
+    /// Index range of its slacks.
     const FIRST: usize;
     const END: usize;
-    /// True where the two slacks of friction stand for the impulses.
+    /// True if the two slacks of friction replace the impulses as variables.
     const CONE: bool;
-    /// True where the sides of friction push only along the tangent though the bound grows with σ: Coulomb's
-    /// law, which is no convex problem.
+    /// True if the sides of friction push only along the tangent although the bound grows with σ, as in Coulomb's law,
+    /// whose problem is not convex.
     const LEANS: bool = false;
-    /// ε, over the compliance of a contact of free bodies: below, rounding in the factorisation eats what is
-    /// gained; above, impulses that carry nothing but each other move too little in a step.
+    /// ε, relative to the compliance of a contact of free bodies. If it were smaller, rounding in the factorisation
+    /// would cancel the gain; if it were larger, impulses that only balance each other would move too little in a step.
     const COMPLIANCE: f64 = 1e-11;
 }
 
@@ -58,7 +58,7 @@ impl Shape for Strip {
     const CONE: bool = false;
 }
 
-/// |λ| ≤ μσ, what is added to v_n lags: `associated` and `desaxce`.
+/// |λ| ≤ μσ, with a lagged term added to v_n: `associated` and `desaxce`.
 pub(super) enum Cone {}
 
 impl Shape for Cone {
@@ -67,7 +67,7 @@ impl Shape for Cone {
     const CONE: bool = true;
 }
 
-/// 0 ≤ σ, |λ| ≤ μσ, the sides pushing along the tangent alone: Coulomb's law.
+/// 0 ≤ σ, |λ| ≤ μσ, the sides of friction pushing only along the tangent: Coulomb's law.
 pub(super) enum Leaning {}
 
 impl Shape for Leaning {
@@ -75,7 +75,7 @@ impl Shape for Leaning {
     const END: usize = 3;
     const CONE: bool = false;
     const LEANS: bool = true;
-    // The unsymmetric factors invert their diagonal blocks, which costs digits.
+    // The unsymmetric factorisation inverts its diagonal blocks, which loses digits.
     const COMPLIANCE: f64 = 1e-8;
 }
 
@@ -89,13 +89,13 @@ pub(super) struct PathContact {
     pub multiplier: [f64; PAIRS],
     /// The lagged bound g, m/s.
     pub bound: f64,
-    /// What lags and is added to w, m/s.
+    /// The lagged term added to w, m/s.
     pub lag: f64,
     /// (w, v) at the present impulses, m/s.
     pub velocity: [f64; 2],
     /// ε.
     pub compliance: f64,
-    /// How far an impulse or a slack gives way: the inverse of what is left of S along it.
+    /// Change of an impulse, or of a slack on the cone, per velocity along it: the inverse of S in that direction.
     pub mobility: [f64; PAIRS],
 }
 
@@ -106,7 +106,7 @@ pub(super) struct PathStep {
     pub multiplier: [f64; PAIRS],
 }
 
-/// The numbers that all contacts share.
+/// Numbers common to all contacts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactNumbers {
     /// κ.
@@ -116,12 +116,12 @@ pub(super) struct ContactNumbers {
 }
 
 impl ContactNumbers {
-    /// ½ of what a contact of free bodies gives way along a slack of the cone: p moves by (1/κ, ±1)/2.
+    /// Compliance of a contact of free bodies along a slack of the cone, in which p moves by (1/κ, ±1)/2.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }
 
-    /// (v_n, v_t) along what a shape moves in: the slacks of the cone; else p itself.
+    /// The component of (v_n, v_t) along a variable of the shape: a slack of the cone, or else a component of p.
     #[inline(always)]
     fn along<S: Shape>(&self, pair: usize, [normal, tangential]: [f64; 2]) -> f64 {
         match (S::CONE, pair) {
@@ -134,13 +134,13 @@ impl ContactNumbers {
 }
 
 impl PathContact {
-    /// The end of the slacks that this contact has: without a bound there is nothing between two of them.
+    /// End of this contact's index range: if the friction bound is 0, the sides of friction have no slacks.
     #[inline(always)]
     pub(super) fn end<S: Shape>(&self) -> usize {
         if !S::CONE && !S::LEANS && self.bound == 0.0 { 1 } else { S::END }
     }
 
-    /// Makes ready for steps.
+    /// Computes the mobilities from slacks, multipliers and ε.
     #[inline(always)]
     pub(super) fn stiffen<S: Shape>(&mut self, numbers: ContactNumbers) {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
@@ -171,14 +171,14 @@ impl PathContact {
         }
     }
 
-    /// μ(y/x − y/x) of the two sides: how a change of σ pushes along the tangent.
+    /// μ(y/x − y/x) of the two sides: the coupling from a change of σ to the tangent.
     #[inline(always)]
     fn lean(&self, numbers: ContactNumbers) -> f64 {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
         numbers.slope * (ratio(1) - ratio(2))
     }
 
-    /// δp and δx of a step to `targets` at a change h of (v_n, v_t).
+    /// δp and δx of a step to `targets`, if (v_n, v_t) change by `change`.
     #[inline(always)]
     fn answer<S: Shape>(
         &self,
@@ -202,7 +202,7 @@ impl PathContact {
         }
         let force = (push(1) - push(2) - along(1)) - changed(1);
         if S::LEANS {
-            // x = μσ ± λ would be what is left of two large changes where the contact slides.
+            // If the contact slides, x = μσ ± λ would be the small difference of two large changes.
             let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
             let grown = numbers.slope * normal;
             let soft = numbers.tangential_compliance * self.compliance;
@@ -225,7 +225,7 @@ impl PathContact {
         self.answer::<S>(numbers, targets, [0.0; 2]).0
     }
 
-    /// The step that goes with a change of (v_n, v_t).
+    /// The step that belongs to a change of (v_n, v_t).
     #[inline(always)]
     pub(super) fn direction<S: Shape>(
         &self,
@@ -242,7 +242,7 @@ impl PathContact {
         direction
     }
 
-    /// The largest share of a step, up to 1, that leaves all slacks and multipliers positive.
+    /// The longest step length, up to 1, that keeps all slacks and multipliers non-negative.
     #[inline(always)]
     pub(super) fn longest<S: Shape>(&self, direction: &PathStep) -> f64 {
         let mut longest: f64 = 1.0;
@@ -259,7 +259,7 @@ impl PathContact {
         longest
     }
 
-    /// Takes a share of a step.
+    /// Takes a step of length `share`.
     #[inline(always)]
     pub(super) fn advance<S: Shape>(&mut self, direction: &PathStep, share: f64) {
         for (value, change) in self.impulse.iter_mut().zip(direction.impulse) {
@@ -271,13 +271,13 @@ impl PathContact {
         }
     }
 
-    /// Places a contact on the path at x·y = `centre` (m²/s²), near where the natural map leads: `trial` is
+    /// Places a contact on the path at x·y = `centre` (m²/s²), near the point that the natural map leads to; `trial` is
     /// (σ − w, λ − v m_t/m_n).
     ///
-    /// σ and its multiplier u are to differ by the trial σ − u, which with σu = τ is a quadratic equation.
-    /// Within lagged bounds the smaller slack x and the larger, 2g − x, are to have τ/x − τ/(2g − x) for the
-    /// velocity; the second term is left out, which again leaves a quadratic equation. On the cone the
-    /// slacks of the nearest point and their multipliers are moved off 0 in the same way.
+    /// With τ = `centre`: σ and its multiplier u must have the difference σ − u of the trial and the product τ, which
+    /// gives a quadratic equation. With a lagged bound g, the smaller slack x and the larger slack 2g − x must make the
+    /// velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic equation. On the cone
+    /// the slacks of the nearest point and their multipliers are moved off 0 in the same way.
     pub(super) fn centre<S: Shape>(
         &mut self,
         numbers: ContactNumbers,
@@ -309,7 +309,7 @@ impl PathContact {
     fn centre_on_cone(&mut self, numbers: ContactNumbers, trial: [f64; 2], centre: f64) {
         let ContactNumbers { slope, tangential_compliance, .. } = numbers;
         let nearest = law::nearest_on_cone(slope, tangential_compliance, trial);
-        // (w, v) that the nearest point is to have, and the multipliers that push so.
+        // (w, v) at the nearest point, and the multipliers that make them.
         let normal_velocity = nearest[0] - trial[0];
         let velocity = tangential_compliance * (nearest[1] - trial[1]);
         let together = (normal_velocity / slope).max(velocity.abs());

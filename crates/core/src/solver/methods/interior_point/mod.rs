@@ -1,28 +1,27 @@
 //! A primal–dual interior point with a sparse direct factorisation.
 //!
-//! A convex model of friction (`problem::friction`) asks for the impulses p that make
+//! A convex model of friction (`problem::friction`) asks for the allowed impulses p that minimise
 //!
-//! > ½‖V‖²_M + Σ m_ij s·σ,  V = V_free + M⁻¹ Hᵀ m (p − c),
+//! > ½‖V‖²_M + Σ m_ij s·σ,  V = V_free + M⁻¹ Hᵀ m (p − c);
 //!
-//! least among those that it allows; V is unique. With slacks and multipliers (`contact`) the solution is where
-//! all their products are 0, and the method follows the path on which they are equal and fall (S. Mehrotra,
-//! 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections). V is always formed from the
-//! impulses, so that rounding does not add up, and impulses are eliminated from each Newton step, which leaves
-//! one system for the change of the velocities,
+//! V is unique. With slacks and multipliers (`contact`) all their products are 0 at the solution. The method follows
+//! the path on which the products are equal and decrease (S. Mehrotra, 1992, for predictor and corrector; J. Gondzio,
+//! 1996, for further corrections). V is always formed from the impulses, so that rounding errors do not add up.
+//! Impulses are eliminated from each Newton step, which leaves one system for the change of the velocities,
 //!
 //! > (M + Hᵀ m S⁻¹ H) δV = Hᵀ m S⁻¹ b,
 //!
-//! a positive definite matrix with a block for each body and each pair that touches. How often one is to be
-//! factorised hardly depends on the number of contacts, which is what sets the method apart: sweeps and
-//! guesses need more of everything on a larger pile.
+//! with a positive definite matrix that has a block for each body and for each pair in contact. The number of
+//! factorisations hardly depends on the number of contacts. This distinguishes the method: sweeps and Newton's guesses
+//! need more iterations on a larger pile.
 //!
-//! Where steps become short near the end, as on dense piles, whose contacts carry more than they need, proximal
-//! multipliers (`proximal`) end the solve; where the path leads nowhere they are tried from far away.
+//! If steps become short near the end, as on dense piles, which are hyperstatic, proximal multipliers (`proximal`)
+//! finish the solve. If the path does not lead to a solution, proximal multipliers are tried from far away.
 //!
-//! A start is the point of the path that is nearest to where the natural map leads from the impulses that sweeps leave,
-//! as far along as these are good.
+//! A solve starts with a few sweeps, and one update of the natural map from their impulses. Its first interior point is
+//! the point of the path nearest to the result; the better the impulses are, the further along the path this point is.
 //!
-//! Coulomb's law is no convex problem, and its path may turn back (`path`).
+//! The problem of Coulomb's law is not convex, and its path may turn back (`path`).
 
 mod contact;
 mod path;
@@ -43,7 +42,7 @@ use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings};
 use crate::world::FrictionCone;
 
-/// A workspace for each number of degrees of freedom; those that are not used hold no memory.
+/// One workspace for each number of degrees of freedom; unused ones hold no memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct InteriorMemory {
     one: PathWorkspace<1>,
@@ -51,8 +50,9 @@ pub(crate) struct InteriorMemory {
     three: PathWorkspace<3>,
 }
 
-/// Solves a prepared problem under the model of friction that it was prepared for, without the impulses of the step before
-/// where friction wedged these. Where the path of Coulomb's law leads nowhere, `go_on` takes over.
+/// Solves a prepared problem under the model of friction that it was prepared for. The solve starts without the
+/// impulses of the step before if friction has wedged them. If the path of Coulomb's law does not lead to a solution,
+/// `go_on` continues.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
@@ -75,7 +75,7 @@ pub(super) fn solve<M: Model>(
     })
 }
 
-/// Solves a problem within the bounds of friction that it has.
+/// Solves a problem with its present friction bounds.
 #[cfg(test)]
 pub(crate) fn solve_within_bounds<M: Model>(
     problem: &mut StepProblem<M>,
@@ -102,8 +102,8 @@ fn convex<M: Model, S: Shape>(
     }
 }
 
-/// Follows the path of Coulomb's law as far as it leads, and has another method go on from there. The
-/// compressive cone has a corner at σ = c, which no path goes round.
+/// Follows the path of Coulomb's law as far as possible, and then lets another method continue. The compressive cone
+/// has a corner at σ = c that the path cannot pass.
 fn coulomb<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,

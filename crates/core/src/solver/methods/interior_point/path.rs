@@ -1,14 +1,12 @@
-//! Steps along the path, and how far it is followed.
+//! Steps along the path, and the loops that follow it.
 //!
-//! A step is a predictor, a corrector, and corrections of the products that would be far off. The path of a convex
-//! model leads to its solution.
+//! A step consists of a predictor, a corrector, and further corrections of products that would be far from their
+//! target. The path of a convex model leads to its solution.
 //!
-//! The path of Coulomb's law, which may turn back.
-//!
-//! Where it does, a Newton step is as long as it likes and next to nothing of it can be taken. The contacts that
-//! stop it, and those at the same bodies, are then made soft for a while: their impulses move little in a step,
-//! which leads round a fold in a part of the pile while the rest goes on. Sweeps between two starts leave a
-//! path that leads nowhere.
+//! The path of Coulomb's law may turn back. There a Newton step becomes very long, and only a tiny part of it is
+//! feasible. The contacts that limit the step, and the others of their bodies, then get a larger regularisation ε for a
+//! while, so that their impulses move little in a step. This leads around a fold in one part of the pile while the rest
+//! makes progress. If the path does not lead to a solution, sweeps between two starts move away from it.
 
 use super::contact::{PAIRS, PathContact, PathStep, Shape};
 use super::point::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
@@ -18,55 +16,55 @@ use crate::solver::methods::stopping::SolveReport;
 use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::{natural_map, velocity_error};
 
-/// Least and largest share of the present mean product that a step aims at.
+/// Minimum and maximum centring parameter: target product of a step divided by the present mean product.
 const AIMS: [f64; 2] = [1e-6, 1.0];
-/// Share of the longest step that is taken: what is left keeps all off the border.
+/// Fraction of the longest feasible step that is taken, so that all variables stay off the boundary.
 const OFF_BORDER: f64 = 0.999;
-/// Products of a predictor's step count up to so many times the mean product.
+/// Second-order products of a predictor step are limited to this many times the mean product.
 const MOST_SECOND_ORDER: f64 = 1e3;
-/// Further corrections of a step that is shorter than [`LONG_ENOUGH`].
+/// Maximum number of further corrections of a step that is shorter than [`LONG_ENOUGH`].
 const CORRECTIONS: u32 = 3;
 const LONG_ENOUGH: f64 = 0.98;
-/// Products beyond these shares of the aim are corrected.
+/// Products outside this range, relative to the target, are corrected.
 const NEAR_AIM: [f64; 2] = [0.1, 10.0];
-/// What a correction has to gain in the length of the step.
+/// Minimum gain in step length that a correction must bring.
 const WORTH_A_SOLVE: f64 = 0.02;
 
-/// Factorisations without a smaller natural map after which a start is given up.
+/// A start ends after this many factorisations without a smaller natural map.
 const PATIENCE: u32 = 15;
-/// Where the natural map is below this and not yet small enough, proximal multipliers are to end the solve. On cones they
-/// are not tried: paths there do not slow down.
+/// Proximal multipliers are to finish the solve if the natural map is below this but not yet small enough. They are not
+/// used on cones, where the path does not slow down.
 const POLISH_FROM: f64 = 1e-6;
-/// Where they did not, they are tried again below this share of it.
+/// If proximal multipliers fail, they are tried again below this fraction of the natural map at which they failed.
 const POLISH_AGAIN: f64 = 0.1;
-/// Below this share of the velocities' error that sweeps leave the path came nearer to a solution than they. Larger: where
-/// there is none, huge impulses are taken for one.
+/// The result of the path is kept if its velocity error is below this fraction of the error after [`SWEEPS_INSTEAD`]
+/// sweeps. If the fraction were larger, huge impulses would count as a solution of a problem that has none.
 const FAR_NEARER: f64 = 1e-2;
-/// Sweeps that stand for a solution where there is none.
+/// Sweeps whose result is used if the path finds no solution.
 const SWEEPS_INSTEAD: u32 = 100;
-/// Starts, each further up the path.
+/// Number of starts, each further back on the path.
 const STARTS: u32 = 4;
 
-/// Starts after which the path is left to others.
+/// Number of starts on the path of Coulomb's law before another method takes over.
 const FOLDED_STARTS: u32 = 4;
 /// Sweeps between two starts.
 const SWEEPS_BETWEEN: u32 = 30;
-/// Factorisations without half the natural map after which a start is given up.
+/// A start ends after this many factorisations that have not halved the natural map.
 const FOLDED_PATIENCE: u32 = 8;
-/// So many steps in a row that are shorter than [`SHORT_STEP`] end a start, too.
+/// A start also ends after this many consecutive steps that are shorter than [`SHORT_STEP`].
 const SHORT_STEPS: u32 = 3;
 const SHORT_STEP: f64 = 0.05;
-/// Of a step shorter than this, the contacts that stop it are made soft.
+/// If a step is shorter than this, the contacts that limit it are regularised more.
 const LONG_STEP: f64 = 0.3;
-/// Bounds of ε of a contact that is made soft.
+/// Bounds of ε of a contact that limits a step.
 const SOFT: [f64; 2] = [1e-3, 1.0];
-/// The factor by which that grows.
+/// Factor by which ε of such a contact grows per step.
 const SOFTENING: f64 = 30.0;
-/// Factor of ε of all others.
+/// Factor by which ε of all other contacts falls per step.
 const HARDENING: f64 = 0.5;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Takes a step along the path; the share of it that was taken, and the natural map where it leads.
+    /// Takes a step along the path. Returns the step length and the natural map after the step.
     pub(super) fn advance(&mut self) -> (f64, f64) {
         let share = self.newton_step();
         self.report.factorisations += 1;
@@ -78,7 +76,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         (share, left)
     }
 
-    /// Takes a step; the share that was taken.
+    /// Takes a step. Returns its length as a fraction of the full Newton step.
     pub(super) fn newton_step(&mut self) -> f64 {
         self.assemble();
         let mean = self.mean_product();
@@ -88,7 +86,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let affine_share = self.find_step();
         let left = self.mean_product_after(affine_share);
         let [least, most] = AIMS;
-        // Not `clamp`, which panics where a number is none.
+        // `max` replaces NaN by the limit; `clamp` would keep NaN.
         let aim = (left / mean).powi(5).max(least).min(most) * mean;
         let most_second_order = MOST_SECOND_ORDER * mean;
         let PathWorkspace { contacts, targets, step, .. } = &mut *self.workspace;
@@ -116,7 +114,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         share
     }
 
-    /// Σ x y over their number.
+    /// Mean of the products x y.
     pub(super) fn mean_product(&self) -> f64 {
         self.mean_product_after(0.0)
     }
@@ -136,8 +134,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         sum / pairs as f64
     }
 
-    /// Aims anew at products that a longer step would leave far from the aim; the share of the step that can
-    /// be taken then, where that is worth it.
+    /// Corrects the targets of products that a longer step would leave far from `aim`. Returns the new step length, or
+    /// `None` if the correction gains too little.
     fn corrected(&mut self, share: f64, aim: f64) -> Option<f64> {
         let longer = (1.5 * share + 0.2).min(1.0);
         let [least, most] = NEAR_AIM.map(|factor| factor * aim);
@@ -159,7 +157,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         None
     }
 
-    /// Makes contacts ready at the present velocities, and sets up and factorises the system of their steps.
+    /// Updates the contacts to the present velocities, and assembles and factorises the system of their steps.
     fn assemble(&mut self) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, contacts, .. } = &mut **workspace;
@@ -173,7 +171,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         system.assemble::<M, S>(problem, graph, answers);
     }
 
-    /// Finds the step to the targets, with the factors that there are; the largest share that can be taken.
+    /// Finds the step to the targets with the present factors. Returns the longest feasible step length.
     fn find_step(&mut self) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, contacts, targets, step, .. } = &mut **workspace;
@@ -195,7 +193,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         share
     }
 
-    /// Follows the path to its end. Where rounding bars the way, begins again further up.
+    /// Follows the path to its end. If rounding prevents that, starts again further back on the path.
     pub(super) fn solve_convex(mut self) -> SolveReport {
         if self.settles_in(SWEEPS_FIRST) {
             return self.report;
@@ -221,7 +219,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
                     self.take_impulses();
                     polish_from = POLISH_AGAIN * left;
                 }
-                // Not a number is not below anything.
+                // NaN compares false, so it counts as no progress.
                 since_best = if left < best { 0 } else { since_best + 1 };
                 best = best.min(left);
                 if left.is_nan() {
@@ -235,8 +233,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
         self.go_back();
         let of_path = velocity_error(self.problem).told;
-        // Where no velocities satisfy all contacts at once, impulses grow without bound along the path, and nothing is
-        // gained. Where that came far nearer to a solution, it was asked for more than rounding allows.
+        // If no velocities satisfy all contacts at once, impulses grow without bound along the path, and the result of
+        // sweeps is used. If the path came much nearer to a solution than sweeps do, its result is kept: then the
+        // tolerance was below what rounding allows.
         self.problem.write_impulses(self.workspace.first.iter().copied());
         if !self.settles_in(SWEEPS_INSTEAD)
             && of_path < FAR_NEARER * velocity_error(self.problem).told
@@ -247,13 +246,14 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         self.report
     }
 
-    /// True where as many sweeps and factorisations were made as the settings allow, or an onlooker ends the solve.
+    /// Returns true if the limit of sweeps and factorisations is reached, or if an onlooker ends the solve.
     pub(super) fn is_spent(&self) -> bool {
         let sweeps = self.report.sweeps + self.report.factorisations;
         sweeps >= self.settings.max_sweeps || is_ended(SolveProgress { sweeps, residual: None })
     }
 
-    /// Follows the path as far as it leads; where that is not to its end, the impulses are the best on the way.
+    /// Follows the path of Coulomb's law as far as possible. If it does not reach the end, the impulses with the
+    /// smallest natural map remain.
     pub(super) fn follow_path(mut self) -> SolveReport {
         if self.settles_in(SWEEPS_FIRST) {
             return self.report;
@@ -294,7 +294,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         false
     }
 
-    /// Softens what stopped a step of which this share was taken, and hardens the rest.
+    /// Increases ε of contacts at the bodies that limited a step of length `share`, and decreases ε of all others.
     fn soften(&mut self, share: f64) {
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { contacts, step, stopped, .. } = &mut **workspace;
@@ -325,7 +325,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     }
 }
 
-/// The targets of the slacks that a contact has, with their numbers.
+/// The targets of a contact's slacks, with the index of each slack.
 #[inline(always)]
 fn pairs<'a, S: Shape>(
     contact: &PathContact,

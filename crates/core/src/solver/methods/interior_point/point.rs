@@ -1,4 +1,4 @@
-//! The interior point of a solve: where it starts, its step, and how it ends.
+//! The interior point of a solve: its start, its size limits, and the tests that end it.
 
 use std::marker::PhantomData;
 
@@ -16,57 +16,58 @@ use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
 /// Sweeps before the first factorisation: many steps of a pile at rest need no more.
 pub(super) const SWEEPS_FIRST: u32 = 4;
-/// Within so many times the tolerance sweeps are tried.
+/// Sweeps are tried if the measure of the stopping test is within this many times the tolerance.
 const SWEEPS_FROM: f64 = 10.0;
-/// Impulses may grow by this factor over those, and the velocities, that a solve begins with: those of a cold
-/// start on a pile of 100 layers do by 10⁴.
+/// Maximum growth of impulses relative to the impulses and velocities at the start of a solve. From a cold start on a
+/// pile of 100 layers they grow by 10⁴.
 const LARGEST_IMPULSE: f64 = 1e7;
 /// Sweeps that finish a solve.
 const SWEEPS_LAST: u32 = 2;
 
-/// The product of slack and multiplier at the start, over the mean square of what the natural map still
-/// changes. Smaller, and contacts that end elsewhere than they began are freed slowly; larger, and a warm
-/// start is wasted.
+/// Product of slack and multiplier at the start, divided by the mean square of the change that the natural map would
+/// make. If it were smaller, contacts that change their state would be freed slowly; if it were larger, a warm start
+/// would be lost.
 const CENTRE: f64 = 1e3;
-/// Factor of that product from one start to the next.
+/// Factor of this product from one start to the next.
 const FURTHER_UP: f64 = 1e3;
-/// Bounds of friction below this share of the mean change are none: there is nothing between them to move in.
+/// Friction bounds below this fraction of the root mean square change count as 0, because there is no room between
+/// them.
 const LEAST_BOUND: f64 = 1e-10;
 
-/// What is kept where a body has `D` degrees of freedom.
+/// Work memory for bodies with `D` degrees of freedom.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PathWorkspace<const D: usize> {
     pub graph: ContactGraph,
     pub system: StepMatrix<D>,
-    /// By place: a right-hand side, then the change of the velocities.
+    /// A right-hand side, then the change of the velocities, by place in the elimination order.
     pub vector: Vec<[f64; D]>,
-    /// By row.
+    /// The contacts of the rows. The next three vectors are by row, too.
     pub contacts: Vec<PathContact>,
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,
     pub other_step: Vec<PathStep>,
     /// (σ, λ_t) of the rows at the smallest natural map so far.
     pub best: Vec<[f64; 2]>,
-    /// The same as the solve began.
+    /// (σ, λ_t) of the rows at the start of the solve.
     pub first: Vec<[f64; 2]>,
-    /// Of the proximal multipliers, by row.
+    /// The contacts of the proximal multipliers, by row.
     pub near: Vec<ProximalContact>,
-    /// M(V − V_free) of these, by place, kg m/s.
+    /// M(V − V_free) of the proximal multipliers, by place, kg m/s.
     pub momenta: Vec<[f64; D]>,
-    /// Bodies at which a step was stopped.
+    /// Bodies with a contact that limited the last step.
     pub stopped: Vec<bool>,
 }
 
-/// An interior point on its way through a solve.
+/// The state of a solve by the interior point.
 pub(super) struct InteriorPoint<'a, M: Model, S, const D: usize> {
     pub problem: &'a mut StepProblem<M>,
     pub settings: &'a SolverSettings,
     pub workspace: &'a mut PathWorkspace<D>,
     pub numbers: ContactNumbers,
     pub report: SolveReport,
-    /// σ beyond this, m/s, is no part of a solution.
+    /// σ beyond this, m/s, cannot be part of a solution.
     pub largest_impulse: f64,
-    /// The smallest natural map so far, whose impulses are kept.
+    /// The smallest natural map so far; `workspace.best` has its impulses.
     pub best: f64,
     pub shape: PhantomData<S>,
 }
@@ -93,13 +94,13 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Sweeps up to so many times. True where the stopping test is met.
+    /// Makes up to `sweeps` sweeps. Returns true if the stopping test is met.
     pub(super) fn settles_in(&mut self, sweeps: u32) -> bool {
         let sweeps = sweeps.min(self.settings.max_sweeps - self.report.sweeps);
         settles_in(self.problem, self.settings, sweeps, &mut self.report)
     }
 
-    /// True where what the settings stop by is within so many times their tolerance, the natural map being `left`.
+    /// Returns true if the measure of the stopping test is within `times` the tolerance; `left` is the natural map.
     pub(super) fn is_within(&self, left: f64, times: f64) -> bool {
         let tolerance = times * self.settings.tolerance;
         match self.settings.stop {
@@ -108,8 +109,8 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Where the solution is near enough, lets sweeps end the solve: they put on their bounds the impulses
-    /// that belong there. Where they do not end it, goes back.
+    /// Lets sweeps end the solve if the solution is near enough: they put impulses exactly on their bounds. If they do
+    /// not end the solve, returns to the present point.
     pub(super) fn finishes(&mut self, left: f64) -> bool {
         if !self.is_within(left, SWEEPS_FROM) || !self.is_bounded() {
             return false;
@@ -121,13 +122,13 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         finished
     }
 
-    /// Gives the rows the impulses of the present point, and the bodies the velocities that they make.
+    /// Gives the rows the impulses of the present point, and the bodies the resulting velocities.
     pub(super) fn take_impulses(&mut self) {
         let contacts = &self.workspace.contacts;
         self.problem.write_impulses(contacts.iter().map(|contact| contact.impulse));
     }
 
-    /// Notes what the solve begins with, and how far from it impulses may lead.
+    /// Records the impulses at the start of the solve, and the largest impulse that a solution may have.
     pub(super) fn begin(&mut self) {
         let Self { problem, workspace, .. } = self;
         problem.rows.read_impulses(&mut workspace.first);
@@ -140,19 +141,19 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.keep(natural_map(self.problem));
     }
 
-    /// True where the impulses are of a size that a solution may have. On a path that leads nowhere they grow, and
-    /// all changes become small beside them.
+    /// Returns true if the impulses have a size that a solution may have. On a path that does not lead to a solution
+    /// impulses grow, and all changes become small relative to them.
     pub(super) fn is_bounded(&self) -> bool {
         let contacts = &self.workspace.contacts;
         contacts.iter().all(|contact| contact.impulse[0] <= self.largest_impulse)
     }
 
-    /// The same of the rows' impulses.
+    /// Tests the rows' impulses in the same way as [`Self::is_bounded`].
     pub(super) fn has_bounded_rows(&self) -> bool {
         self.problem.rows().all(|(_, row)| row.shifted_impulse <= self.largest_impulse)
     }
 
-    /// Keeps the rows' impulses, whose natural map is `left`.
+    /// Keeps the rows' impulses, whose natural map is `left`, as the best so far.
     pub(super) fn keep(&mut self, left: f64) {
         self.best = left;
         self.problem.rows.read_impulses(&mut self.workspace.best);
@@ -162,7 +163,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.problem.write_impulses(self.workspace.best.iter().copied());
     }
 
-    /// Begins at the point of the path that is nearest to where the natural map leads.
+    /// Moves to the point of the path that is nearest to the result of the natural map.
     pub(super) fn start(&mut self, starts_before: u32) {
         let Self { problem, workspace, numbers, .. } = self;
         let opening_lags = problem.friction.model != FrictionModel::Tresca && S::CONE;
@@ -187,7 +188,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
                 };
                 squares += (row.tangential_impulse - law::coulomb(trial[1], allowed)).powi(2);
             }
-            // The trial waits where the velocity will be.
+            // `velocity` contains the trial until the velocity is computed.
             contacts.push(PathContact {
                 bound,
                 lag: extra,

@@ -1,23 +1,23 @@
-//! Proximal multipliers with semi-smooth Newton and exact line search: what ends a solve where the interior point's steps
-//! become short, and what is tried where its path leads nowhere.
+//! Proximal multipliers with semi-smooth Newton and exact line search. They finish a solve if the interior point's
+//! steps become short, and are tried if its path does not lead to a solution.
 //!
-//! With p the impulses so far, (w, v) the velocities of a contact, R = diag(1, m_n/m_t), ε a compliance and Π the nearest
-//! point that the model allows in the metric R, let y = p − R⁻¹(w, v)/ε. Then
+//! Let p be the present impulses, (w, v) the velocities of a contact, R = diag(1, m_n/m_t), ε a compliance, Π the
+//! projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε. Then
 //!
 //! > F(V) = ½‖V − V_free‖²_M + Σ (m ε/2) (‖y‖²_R − ‖y − Π(y)‖²_R)
 //!
-//! is convex and once differentiable, with
+//! is convex and once differentiable, with gradient and Hessian
 //!
-//! > ∇F = M(V − V_free) − Σ Hᵀ m Π(y),  M + Σ (m/ε) Hᵀ J R⁻¹ H
+//! > ∇F = M(V − V_free) − Σ Hᵀ m Π(y),  M + Σ (m/ε) Hᵀ J R⁻¹ H,
 //!
-//! for its Hessian where Π has the derivative J: positive definite, with the blocks of the interior point's systems.
-//! At its minimum V is what the impulses Π(y) make, and p ← Π(y) brings them nearer to the solution (R. T. Rockafellar, 1976;
-//! with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and others, 2022). F is a
-//! quadratic function where the pieces of Π stay the same, so a whole step within one of them is the minimum, and along a line
-//! F′ is piecewise linear and rising, which Newton's method finds the root of.
+//! J the derivative of Π. The Hessian is positive definite, with the blocks of the interior point's systems. At the
+//! minimum of F, V agrees with the impulses Π(y), and p ← Π(y) brings the impulses nearer to the solution (R. T.
+//! Rockafellar, 1976; with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and others,
+//! 2022). F is quadratic as long as the pieces of Π stay the same, so a full step within one piece reaches the minimum.
+//! Along a line F′ is piecewise linear and rising; its root is found by Newton's method.
 //!
-//! V is not formed anew from impulses: the velocities of contacts and M(V − V_free) change by their parts of each step, since
-//! rounding would eat what a small ε magnifies.
+//! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to
+//! M(V − V_free), because a small ε magnifies rounding errors.
 
 use super::contact::Shape;
 use super::point::{InteriorPoint, PathWorkspace};
@@ -26,31 +26,31 @@ use super::system::{all_inertias, for_each_change, push_all};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::natural_map;
 
-/// ε of a solve from far away, and of one that ends what the interior point has begun.
+/// Initial ε of a solve from far away; below, of a solve that finishes the interior point's.
 const FAR: f64 = 0.1;
 const CLOSE: f64 = 1e-5;
-/// ε is no smaller: rounding would eat more than is gained.
+/// Minimum ε; with a smaller ε rounding would cost more than is gained.
 const LEAST: f64 = 1e-10;
 /// Factor of ε from one minimum to the next.
 const FACTOR: f64 = 0.1;
-/// Factorisations without half of the natural map after which a solve from far away is given up.
+/// A solve from far away ends after this many factorisations that have not halved the natural map.
 const PATIENCE: u32 = 40;
-/// Factorisations of one that is near.
+/// Maximum number of factorisations of a solve that finishes the interior point's.
 const FEW: u32 = 16;
-/// (∇F)² that is small enough, over that where ε was set.
+/// ε is reduced when ∇F·M⁻¹∇F has fallen to this fraction of its value at the beginning with this ε.
 const NEAR_MINIMUM: f64 = 1e-4;
-/// Evaluations of F′ on a line.
+/// Maximum number of evaluations of F′ on a line.
 const TRIALS: u32 = 40;
-/// F′ is 0 below this share of what it is where the line begins.
+/// F′ counts as 0 below this fraction of its value at the beginning of the line.
 const ROOT: f64 = 1e-9;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Goes on from the impulses of the present point, which are nearly a solution; whether that ends the solve.
+    /// Continues from the impulses of the present point, which is near a solution. Returns true if that ends the solve.
     pub(super) fn polish(&mut self) -> bool {
         self.approach(CLOSE, FEW, FEW)
     }
 
-    /// Begins at the impulses of the smallest natural map so far; whether that ends the solve.
+    /// Starts from the impulses with the smallest natural map so far. Returns true if that ends the solve.
     pub(super) fn solve_from_far(&mut self) -> bool {
         let PathWorkspace { contacts, best, .. } = &mut *self.workspace;
         for (contact, &impulse) in contacts.iter_mut().zip(&*best) {
@@ -102,7 +102,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// Takes up the contacts' impulses, and the velocities that they make.
+    /// Sets impulses and velocities from the contacts of the interior point.
     fn begin_near(&mut self) {
         let numbers = self.numbers;
         let PathWorkspace { near, contacts, .. } = &mut *self.workspace;
@@ -125,13 +125,13 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         push_all(problem, &graph.elimination, impulses, momenta);
     }
 
-    /// Gives the rows impulses, and the bodies the velocities that these make.
+    /// Gives the rows impulses, and the bodies the resulting velocities.
     fn take_near(&mut self, impulse: impl Fn(&ProximalContact) -> [f64; 2]) {
         let Self { problem, workspace, .. } = self;
         problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
-    /// Gives the rows Π(y); the natural map there.
+    /// Gives the rows the impulses Π(y). Returns the natural map there.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
         let numbers = self.numbers;
         self.take_near(|contact| {
@@ -140,7 +140,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         natural_map(self.problem)
     }
 
-    /// Puts −∇F in the place of a right-hand side; its square in the metric of M, J.
+    /// Writes −∇F to the right-hand side. Returns ∇F·M⁻¹∇F, J.
     fn gradient(&mut self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
@@ -160,7 +160,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         squared
     }
 
-    /// Takes a Newton step, with the gradient that was formed.
+    /// Takes a Newton step with the present gradient.
     fn step_near(&mut self, compliance: f64) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, near, .. } = &mut **workspace;
@@ -190,7 +190,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// The share of the step at which F is least.
+    /// The step length at which F is least.
     fn least_on_line(&self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;
@@ -202,7 +202,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
                 at_start += momenta[axis] * change[axis];
             }
         }
-        // F′ and F″ after a share of the step.
+        // F′ and F″ at step length `share`.
         let slopes = |share: f64| {
             let mut slopes = [at_start + share * of_masses, of_masses];
             for ((_, row), contact) in problem.rows().zip(near) {

@@ -1,33 +1,33 @@
-//! A contact under proximal multipliers (`proximal` has the symbols).
+//! A contact in the proximal multiplier method (symbols as in `proximal`).
 
 use super::contact::{ContactNumbers, Shape};
 use crate::contact::law;
 use crate::solver::linear::Block;
 
-/// Impulses and velocities of a contact, and the bound of its friction.
+/// Impulses, velocities and friction bound of a contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ProximalContact {
     /// p, m/s.
     pub impulse: [f64; 2],
     /// (w, v), m/s.
     pub velocity: [f64; 2],
-    /// What a whole step adds to it, m/s.
+    /// Change of (w, v) in a whole step, m/s.
     pub change: [f64; 2],
     /// The lagged bound g, m/s.
     pub bound: f64,
 }
 
-/// A piece of Π, on which J is the same.
+/// A piece of Π on which its derivative J is constant.
 #[derive(Clone, Copy)]
 pub(super) enum ProjectionPiece {
-    /// True where σ, and where λ, follows the trial.
+    /// True if σ, and if λ, follows the trial.
     Free([bool; 2]),
-    /// An edge of the cone, by the sign of λ.
+    /// An edge of the cone; the number is the sign of λ.
     Edge(f64),
 }
 
 impl ProjectionPiece {
-    /// J R⁻¹/ε: on an edge of direction d it is d dᵀ/(ε dᵀR d).
+    /// J R⁻¹/ε: on an edge with direction d it is d dᵀ/(ε dᵀR d).
     pub(super) fn stiffness(self, numbers: ContactNumbers, compliance: f64) -> Block<2> {
         let soft = numbers.tangential_compliance;
         match self {
@@ -45,7 +45,7 @@ impl ProjectionPiece {
 }
 
 impl ProximalContact {
-    /// y after a share of a step.
+    /// y after a step of length `share`.
     #[inline(always)]
     pub(super) fn trial(&self, numbers: ContactNumbers, compliance: f64, share: f64) -> [f64; 2] {
         let [normal, tangential] =
@@ -54,7 +54,7 @@ impl ProximalContact {
         [shifted - normal, across - tangential / numbers.tangential_compliance]
     }
 
-    /// Π.
+    /// Π of a trial.
     #[inline(always)]
     pub(super) fn allowed<S: Shape>(&self, numbers: ContactNumbers, trial: [f64; 2]) -> [f64; 2] {
         if S::CONE {
@@ -63,7 +63,7 @@ impl ProximalContact {
         [law::signorini(trial[0]), law::coulomb(trial[1], self.bound)]
     }
 
-    /// The piece of Π that a trial is in.
+    /// The piece of Π that contains a trial.
     #[inline(always)]
     pub(super) fn piece<S: Shape>(
         &self,

@@ -1,7 +1,7 @@
-//! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric but for Coulomb's law.
+//! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric except for Coulomb's law.
 //!
-//! A wall that a force drives is one more body, behind the grains: its speed V is the first of its coordinates, M + cΔt is
-//! its inertia (`problem::walls`), and its other coordinates take part in nothing.
+//! A driven wall is one more body, numbered after the grains: the first of its coordinates is its speed V with the
+//! inertia M + cΔt (`problem::walls`), and its other coordinates are not coupled to anything.
 
 use super::contact::Shape;
 use crate::solver::kinematics::Model;
@@ -10,16 +10,16 @@ use crate::solver::linear::{
 };
 use crate::solver::problem::{DrivenBy, Row, StepProblem};
 
-/// The matrix, then its factors.
+/// The matrix, replaced by its factors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepMatrix<const D: usize> {
     symmetric: SymmetricBlockMatrix<D>,
-    /// In use where the shape leans.
+    /// Used if the shape leans.
     unsymmetric: BlockMatrix<D>,
 }
 
 impl<const D: usize> StepMatrix<D> {
-    /// Sets the matrix up for the S⁻¹ of each contact, and factorises it.
+    /// Assembles the matrix from S⁻¹ of each contact, and factorises it.
     pub(super) fn assemble<M: Model, S: Shape>(
         &mut self,
         problem: &StepProblem<M>,
@@ -80,10 +80,10 @@ impl<const D: usize> StepMatrix<D> {
     }
 }
 
-/// How a body's velocity enters v_n and v_t of a row.
+/// Gradients of v_n and v_t of a row with respect to a body's velocity.
 type Gradients<const D: usize> = [[f64; D]; 2];
 
-/// The gradients of i; the number of the other body, grain or driven wall, if that can move, and its gradients.
+/// The gradients of i, and, if the second body (grain or driven wall) can move, its number and gradients.
 #[inline(always)]
 fn bodies_of<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -102,7 +102,7 @@ fn bodies_of<M: Model, const D: usize>(
     (on_i, problem.walls.driven_row(number).map(|known| of_wall(known.by)))
 }
 
-/// Adds Hᵀ m p to `momenta` (by place), of (σ, λ) in m/s by row; kg m/s.
+/// Adds Hᵀ m p to `momenta` (by place), kg m/s; `impulses` are (σ, λ) of each row, m/s.
 #[inline(always)]
 pub(super) fn push_all<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -120,7 +120,7 @@ pub(super) fn push_all<M: Model, const D: usize>(
     }
 }
 
-/// Visits the rows, by their numbers, with the change of (v_n, v_t) that goes with a change of velocities (by place).
+/// Visits the rows, with their numbers, and the changes of (v_n, v_t) for `changes` of the velocities (by place).
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -151,7 +151,7 @@ fn relative<const D: usize>(velocity: &[f64; D], on: &Gradients<D>) -> [f64; 2] 
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }
 
-/// By place: the inertias of grains and driven walls, kg.
+/// The inertias of grains and driven walls by place, kg.
 pub(super) fn all_inertias<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     elimination: &Elimination,
@@ -172,7 +172,7 @@ fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
     answer.map(|row| row.map(|entry| mass * entry))
 }
 
-/// m Hᵀ S⁻¹ H of two bodies, kg.
+/// m Hᵀ S⁻¹ H for two bodies, kg.
 #[inline(always)]
 fn stiffness<const D: usize>(
     [[nn, nt], [tn, tt]]: &Block<2>,

@@ -1,5 +1,5 @@
-//! Random contact problems that have a solution: proximal multipliers, which end a solve or stand in for the path, find
-//! the velocities that the path leads to.
+//! Tests with random contact problems that have a solution: proximal multipliers, which finish a solve or replace the
+//! path, find the same velocities as the path.
 
 use super::*;
 use crate::contact::ContactLaw;
@@ -9,7 +9,7 @@ use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane, StopTest};
 
 const FRICTION: f64 = 0.6;
 
-/// Nothing has to move for its contacts, so that there is a solution.
+/// A problem in which no contact forces anything to move, so that a solution exists.
 fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     let law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
     let mut problem = random_problem::<M>(seed, law, 40, 90, 6, 0.0..0.3);
@@ -22,7 +22,7 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     problem
 }
 
-/// Velocities that the path leads to, and those that proximal multipliers alone do, with their factorisations.
+/// Velocities found by the path and by proximal multipliers alone, and the factorisations of the latter.
 fn both_ways<M: Model, S: Shape, const D: usize>(
     seed: u64,
     model: FrictionModel,

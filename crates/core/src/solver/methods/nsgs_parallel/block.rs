@@ -1,8 +1,8 @@
-//! Contacts side by side: a block holds four that share no grain, one a lane, as structure of arrays.
+//! Contacts side by side: a block contains four contacts that share no grain, one per lane, as a structure of arrays.
 //!
-//! All four are solved at once by the arithmetic of one (`methods::sweep`), in the vector registers
-//! that the processor turns out to have: to the last bit what they give one after the other. A block
-//! that a colour does not fill has idle lanes, which act on a body that stands in and change nothing.
+//! All four are solved at once with the arithmetic of one contact (`methods::sweep`), in the vector registers that the
+//! processor has. The result is bitwise the same as one contact after the other. If a colour does not fill a block, the
+//! idle lanes act on a placeholder body and change nothing.
 
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x4};
 
@@ -11,36 +11,36 @@ use crate::solver::kinematics::Model;
 use crate::solver::methods::sweep::{ImpulseChange, Local};
 use crate::solver::problem::{Row, errors, project_by_coulomb, squared_impulse};
 
-/// Contacts in a block: the numbers in a register of AVX2. Wider blocks would leave more lanes idle.
+/// Contacts per block: the numbers in a register of AVX2. Wider blocks would leave more lanes idle.
 pub(super) const LANES: usize = 4;
 
-/// The velocity of a body as blocks see it, an entry a degree of freedom; the rest is 0. It never straddles two
-/// cache lines.
+/// The velocity of a body as blocks store it, one entry per degree of freedom; further entries are not used. It never
+/// straddles two cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(super) struct BodySlot([f64; LANES]);
 
 impl BodySlot {
-    /// The slot of a body.
+    /// Creates the slot of a body.
     pub(super) fn of<M: Model>(body: &M::Body<f64>) -> Self {
         let [x, y, spin] = M::coordinates(body);
         Self([x, y, spin, 0.0])
     }
 
-    /// Gives a body its velocity.
+    /// Copies the velocity to a body.
     pub(super) fn store<M: Model>(&self, body: &mut M::Body<f64>) {
         let [x, y, spin, _] = self.0;
         M::set(body, [x, y, spin]);
     }
 }
 
-/// Four contacts, lane by lane as in [`Row`]: four cache lines, of which a sweep writes one.
+/// Four contacts, with the fields of [`Row`] lane by lane: four cache lines, of which a sweep writes one.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct ContactBlock {
     i: [u32; LANES],
     j: [u32; LANES],
-    /// g_i of pairs; against fixed bodies, how fast their surfaces go along t.
+    /// g_i of pairs; speed of the surface along t of contacts with fixed bodies, m/s.
     share_or_speed: [f64; LANES],
     normal: [[f64; LANES]; 2],
     shifted_impulse: [f64; LANES],
@@ -50,8 +50,8 @@ pub(super) struct ContactBlock {
 }
 
 impl ContactBlock {
-    /// The block of up to four rows, each with the slots of its grains and its share or surface speed. Idle lanes
-    /// have the first slot.
+    /// Creates the block of up to four rows, each with the slots of its grains and its g_i or surface speed. Idle lanes
+    /// use the first slot.
     pub(super) fn of<'a, M: Model>(
         rows: impl Iterator<Item = (&'a Row<M>, [u32; 2], f64)>,
     ) -> Self {
@@ -77,7 +77,7 @@ impl ContactBlock {
         block
     }
 
-    /// Gives its rows their impulses.
+    /// Copies the impulses to the rows of the block.
     pub(super) fn store<'a, M: Model>(&self, rows: impl Iterator<Item = &'a mut Row<M>>) {
         for (lane, row) in rows.enumerate() {
             row.shifted_impulse = self.shifted_impulse[lane];
@@ -87,7 +87,7 @@ impl ContactBlock {
         }
     }
 
-    /// Σ P² of its contacts, (N·s)², given their capture speeds.
+    /// Σ P² of the contacts, (N·s)², given their capture speeds.
     #[inline(always)]
     pub(super) fn squared_impulses(&self, captures: [f64; LANES]) -> f64 {
         sum(std::array::from_fn(|lane| {
@@ -121,7 +121,7 @@ impl ContactBlock {
     }
 }
 
-/// Bodies, one a lane.
+/// Loads bodies, one per lane.
 #[inline(always)]
 fn gather<S: Simd, M: Model>(
     simd: S,
@@ -133,8 +133,8 @@ fn gather<S: Simd, M: Model>(
     M::from_coordinates([x, y, spin])
 }
 
-/// Columns for rows and rows for columns. Slots are read and written whole, in one access each: single numbers
-/// would have to wait for the whole slot that the block before wrote.
+/// Transposes four vectors. Slots are read and written whole, in one access each: reading single numbers would have to
+/// wait for the whole slot that the previous block has written.
 #[inline(always)]
 fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));
@@ -142,7 +142,7 @@ fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     [ac.zip_low(bd), ac.zip_high(bd), other_ac.zip_low(other_bd), other_ac.zip_high(other_bd)]
 }
 
-/// Puts gathered bodies back.
+/// Stores gathered bodies.
 #[inline(always)]
 fn scatter<S: Simd, M: Model>(
     slots: &mut [BodySlot],
@@ -156,14 +156,14 @@ fn scatter<S: Simd, M: Model>(
     }
 }
 
-/// Blocks of a tile or of what lies between tiles; the first are of contacts with fixed bodies.
+/// Blocks of a tile, or of the contacts between tiles; blocks of contacts with fixed bodies come first.
 pub(super) struct Blocks<'a> {
     pub all: &'a mut [ContactBlock],
-    /// How many are of contacts with fixed bodies.
+    /// Number of blocks of contacts with fixed bodies.
     pub fixed: usize,
 }
 
-/// Solves blocks one after the other: of contacts with fixed bodies, then between grains.
+/// Solves blocks one after the other: first contacts with fixed bodies, then contacts between grains.
 #[inline(always)]
 pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
     simd: S,

@@ -1,10 +1,9 @@
-//! Gauss–Seidel by tiles and colours, on several threads and vector registers.
+//! Gauss–Seidel by tiles and colours, on several threads and with vector registers.
 //!
-//! Contacts of two tiles share no grain, nor do contacts of one colour (`problem::order`), so none of them sees
-//! what another does: tiles can be solved at the same time, and a colour's contacts side by side (`block`), to
-//! bitwise the same result. Contacts between tiles follow when all tiles are done: some twentieth of a dense
-//! pile, which one thread solves. What is summed over a sweep is summed tile by tile in one order, whatever the
-//! number of threads.
+//! Contacts of different tiles share no grain, and neither do contacts of one colour (`problem::order`), so they do not
+//! affect each other. Tiles can be solved at the same time, and the contacts of a colour side by side (`block`), with
+//! bitwise the same result. Contacts between tiles are solved after all tiles, by one thread: about a twentieth of a
+//! dense pile. Sums over a sweep are formed tile by tile in a fixed order, whatever the number of threads.
 
 mod block;
 #[cfg(test)]
@@ -26,21 +25,22 @@ use crate::solver::problem::{
 use crate::solver::settings::SolverSettings;
 use crate::threads;
 
-/// Blocks from which on tiles are shared out: 60 µs of work a sweep. With half of it two threads were slower than one.
+/// Number of blocks from which tiles are distributed over threads: 60 µs of work per sweep. With half as many blocks
+/// two threads were slower than one.
 const WORTH_THREADS: usize = 4096;
 
-/// What is kept between steps.
+/// Memory that is kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockMemory {
     layout: TileLayout,
-    /// What the tiles changed.
+    /// Change of the impulses of each tile.
     changes: Vec<ImpulseChange>,
-    /// What the tiles come to, of whatever is summed: squared errors or impulses.
+    /// Sum of each tile: of squared errors or of squared impulses.
     sums: Vec<f64>,
 }
 
 impl BlockMemory {
-    /// Adds up what blocks come to with their slots, tile by tile, then that of those between tiles.
+    /// Sums `add_up` of blocks and their slots: tile by tile, then the blocks between tiles.
     fn sum(
         &mut self,
         threads: bool,
@@ -61,7 +61,7 @@ pub(super) fn solve<M: Model>(
     solve_at::<M>(Level::new(), problem, memory, settings)
 }
 
-/// Solves with the vector instructions of a level.
+/// Solves with the vector instructions of `level`.
 fn solve_at<M: Model>(
     level: Level,
     problem: &mut StepProblem<M>,
@@ -74,12 +74,14 @@ fn solve_at<M: Model>(
     }
 }
 
-/// A problem whose rows' grains all exist and whose tiles and colours are none that share a grain.
+/// A problem whose tiles and colours are valid: all grains of its rows exist, and no two tiles and no two contacts of a
+/// colour share a grain.
 ///
-/// While it lives, impulses of rows are those of the blocks, and velocities those of the slots.
+/// Until [`Tiled::store`] the present impulses are in the blocks and the present velocities in the slots, not in the
+/// problem.
 struct Tiled<'a, M: Model> {
     level: Level,
-    /// True where there are several tiles, threads for them, and enough for these to do.
+    /// True if there are several tiles, several threads, and enough work for them.
     threads: bool,
     law: ContactLaw,
     problem: &'a mut StepProblem<M>,
@@ -88,7 +90,7 @@ struct Tiled<'a, M: Model> {
 }
 
 impl<'a, M: Model> Tiled<'a, M> {
-    /// Nothing where the problem is not such a one.
+    /// Lays out a problem. Returns `None` if its tiles or colours are not valid.
     fn new(
         level: Level,
         problem: &'a mut StepProblem<M>,
@@ -147,7 +149,7 @@ impl<'a, M: Model> Tiled<'a, M> {
             *self.squared_scale.get_or_insert_with(|| squared_residual_scale(self.problem));
         let squared_error = self.squared_error();
         if squared_scale == 0.0 {
-            // What is rounding alone is told by the rows.
+            // The rows are needed to recognise an error that is only rounding.
             self.store();
         }
         residual_of(self.problem, [squared_error, squared_scale])
@@ -181,7 +183,7 @@ impl<'a, M: Model> Tiled<'a, M> {
         blocks.iter().zip(places).map(of_block).sum()
     }
 
-    /// Gives rows and bodies what became of them.
+    /// Copies impulses and velocities back to rows and bodies.
     fn store(&mut self) {
         self.memory.layout.store::<M>(self.problem);
     }
@@ -191,8 +193,7 @@ fn blocks_of(tiles: &[ContactTile]) -> usize {
     tiles.iter().map(|tile| tile.blocks).sum()
 }
 
-/// Visits tiles with their blocks, of which so many are of contacts with fixed bodies, and their slots; on several
-/// threads where these are wanted.
+/// Calls `visit` for each tile with its blocks and slots, on several threads if `threads` is set.
 fn for_each_tile<T: Send>(
     threads: bool,
     tiles: &[ContactTile],
@@ -221,38 +222,38 @@ fn for_each_tile<T: Send>(
     }
 }
 
-/// A slot that no grain is in, and a grain that has no slot.
+/// Marks a slot without a grain, and a grain without a slot.
 const NOBODY: u32 = u32::MAX;
 
-/// What one thread at a time works on: contacts whose grains no other tile's have.
+/// The part of the layout that one thread works on: contacts whose grains are in no other tile.
 #[derive(Clone, Copy, Debug, Default)]
 struct ContactTile {
-    /// Its blocks.
+    /// Number of blocks.
     blocks: usize,
-    /// How many of these, the first, are of contacts with fixed bodies.
+    /// Number of blocks of contacts with fixed bodies; they come first.
     fixed: usize,
-    /// Its slots.
+    /// Number of slots.
     slots: usize,
 }
 
-/// What is known of a grain while blocks are made.
+/// State of a grain while blocks are created.
 #[derive(Clone, Copy, Debug)]
 struct GrainMark {
     slot: u32,
-    /// Number of its tile from 1.
+    /// Number of its tile, from 1; 0 between tiles.
     tile: u32,
-    /// The last colour that it was seen in.
+    /// The last colour with a contact of the grain.
     colour: u32,
 }
 
 const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
 
-/// Where blocks are added.
+/// The tile that blocks are added to.
 #[derive(Clone, Copy)]
 struct BlockPlace {
-    /// Number of the tile from 1; 0 between tiles.
+    /// Number of the tile, from 1; 0 between tiles.
     tile: u32,
-    /// The slot that indices are counted from.
+    /// The slot that the tile's indices count from.
     first_slot: u32,
 }
 
@@ -261,25 +262,26 @@ struct BlockPlace {
 struct TileLayout {
     /// Tiles in the order of their blocks and slots.
     tiles: Vec<ContactTile>,
-    /// Blocks tile by tile, each colour by colour; the indices of a tile's are into its own slots. Then those
-    /// between tiles, whose indices are into all slots.
+    /// Blocks tile by tile, and within a tile colour by colour; their indices count within the tile's own slots. The
+    /// blocks between tiles come last; their indices count within all slots.
     blocks: Vec<ContactBlock>,
-    /// How many blocks between tiles are of contacts with fixed bodies.
+    /// Number of blocks between tiles of contacts with fixed bodies.
     fixed_between: usize,
-    /// Bodies tile by tile, in the order in which blocks first meet them. The first of a tile stands in where a
-    /// lane is idle.
+    /// Bodies tile by tile, in the order in which blocks first use them. The first slot of a tile is the placeholder
+    /// for idle lanes.
     slots: Vec<BodySlot>,
-    /// Rows of each block, numbered as in the problem.
+    /// Row numbers of each block, as in the problem.
     places: Vec<Range<u32>>,
-    /// Grain of each slot.
+    /// The grain of each slot.
     grains: Vec<u32>,
     marks: Vec<GrainMark>,
     colours: u32,
 }
 
 impl TileLayout {
-    /// Visits the blocks of all tiles with their slots, on several threads where these are wanted, and then those between
-    /// tiles; gives what comes of these.
+    /// Calls `visit` for the blocks and slots of all tiles, on several threads if `threads` is set, and then for the
+    /// blocks between tiles. Stores the results of the tiles in `results` and returns the result of the blocks between
+    /// tiles.
     fn visit<T: Send>(
         &mut self,
         threads: bool,
@@ -292,7 +294,8 @@ impl TileLayout {
         visit(Blocks { all: between, fixed: *fixed_between }, slots)
     }
 
-    /// Lays out a problem. Nothing where its grains do not all exist, or a colour or two tiles share one.
+    /// Lays out a problem. Returns `None` if a grain does not exist, or if two tiles or two contacts of a colour share
+    /// a grain.
     fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();
         self.blocks.clear();
@@ -325,8 +328,8 @@ impl TileLayout {
         Some(())
     }
 
-    /// Adds the blocks of a tile, or those between tiles behind the last, and tells how many are of contacts
-    /// with fixed bodies.
+    /// Adds the blocks of a tile, or the blocks between tiles if `tile` is past the last tile. Returns the number of
+    /// blocks of contacts with fixed bodies.
     fn add_all<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -350,7 +353,7 @@ impl TileLayout {
         Some(fixed_blocks)
     }
 
-    /// Adds the blocks of a colour, whose rows, with share or surface speed, are numbered from `first`.
+    /// Adds the blocks of a colour. `rows` are its rows with g_i or surface speed, numbered from `first`.
     fn add<'a, M: Model>(
         &mut self,
         rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,
@@ -388,7 +391,7 @@ impl TileLayout {
         Some(())
     }
 
-    /// Gives rows and bodies what became of them.
+    /// Copies impulses and velocities back to rows and bodies.
     fn store<M: Model>(&self, problem: &mut StepProblem<M>) {
         let ContactRows { fixed, pairs, .. } = &mut problem.rows;
         for (block, place) in self.blocks.iter().zip(&self.places) {

@@ -1,4 +1,4 @@
-//! What shocks hand over to the step.
+//! Results of shocks, passed on to the step.
 
 use glam::DVec2;
 
@@ -12,29 +12,28 @@ use crate::world::World;
 /// A bond that a shock closed.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosedBond {
-    /// The part of the step that was left.
+    /// The remaining fraction of the step.
     pub part: f64,
-    /// What gravity had given the pair by then, m/s.
+    /// Velocity that gravity had given the pair by then, m/s.
     pub gained: f64,
 }
 
 impl Shocks {
-    /// Lets a problem go on from its shocks: bodies begin with v⁺, and each contact may close the gap that it
-    /// has from where its bodies would have begun to be where they are.
+    /// Makes a problem continue from its shocks. Bodies begin with v⁺. Each contact may close the gap that it would
+    /// have if its bodies had moved with their present velocities from the beginning.
     ///
-    /// **What passes by.** A gap is taken to close with the speed along the normal that its pair had at the
-    /// beginning, which bars a grain from passing another one that it would have missed. Where that would
-    /// happen, and the two do not meet, the gap is taken as its tangent at the end of the step: v⁺ itself
-    /// then obeys every contact.
+    /// **Grains that pass by.** The constraint on a gap uses the speed along the normal of the beginning, which stops
+    /// a grain that would have passed another one. If that would happen and the two do not meet, the constraint uses
+    /// the tangent of the gap at the end of the step. Then v⁺ itself satisfies every contact.
     ///
-    /// **None has to open.** A pair that was struck at t opens from then on, as if from a gap of −t v_n⁺. Were
-    /// it to end the step with no overlap at all, v_n would have to be above 0 for it and could not be for
-    /// others that hold it: v = 0 would no longer obey every contact, and a cluster in which many were struck
-    /// is then often not solved. So v_n ≥ 0 is all that is asked for, and what is left of an overlap,
-    /// t v_n⁺ at the most, is pushed out (`range::separate`).
+    /// **No contact has to open.** A pair that was struck at t opens from then on, as if from a gap of −t v_n⁺. If it
+    /// had to end the step without any overlap, its v_n would have to be above 0, while other contacts that hold it
+    /// may not allow that: v = 0 would no longer satisfy every contact, and a cluster with many struck contacts would
+    /// often not be solved. So only v_n ≥ 0 is required, and the remaining overlap, at most t v_n⁺, is pushed out
+    /// (`range::separate`).
     ///
-    /// **Gaps below the touch are none** after a shock as before it. Slacks of the size of rounding between
-    /// grains that touch make a contact open or shut by less than a step is solved to.
+    /// **Gaps below the touch tolerance count as zero**, after a shock as before it. Slacks of the size of rounding
+    /// between touching grains would open or close a contact by less than the tolerance of a step.
     pub(super) fn hand_over<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -70,8 +69,8 @@ impl Shocks {
         }
     }
 
-    /// How fast a contact may close after the shocks, m/s, relative to a wall that moves, and along which normal
-    /// if that is another one; nothing where all is as it was.
+    /// Closing speed that a contact may have after the shocks, m/s, relative to a moving wall, and its new normal if
+    /// it has changed. `None` if nothing has changed.
     fn closing_left<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -107,16 +106,16 @@ impl Shocks {
         (changes || normal.is_some()).then_some((allowed, normal))
     }
 
-    /// The capture speeds, m/s, that a row was prepared with and that a pair has for what is left of the step
-    /// after it has closed its bond; nothing where it has not.
+    /// The capture speed, m/s, with which a row was prepared, and that of a pair for the rest of the step after a
+    /// shock has closed its bond. `None` if no shock has.
     fn capture_left<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> Option<[f64; 2]> {
         let before = *problem.rows.captures.get(number)?;
         let ClosedBond { part, .. } = self.closed(number)?;
         Some([before, part * problem.law.capture_speed()])
     }
 
-    /// What a shock has left of the step to the bond of a row, if it closed that: a pair that touches and is
-    /// bonded has it as before.
+    /// The remaining step for the bond of a row, if a shock closed the bond. A pair that already touched and was
+    /// bonded keeps its bond unchanged.
     pub(in super::super) fn closed(&self, number: usize) -> Option<ClosedBond> {
         let pair = self.pairs.get(number)?;
         let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !pair.is_bonded);
@@ -126,16 +125,15 @@ impl Shocks {
         })
     }
 
-    /// True where what the step does to a row acts in what a meeting has left of it: a pair that met at t and was
-    /// not struck since has no gap at t, so that at the end it has (Δt − t) v^n, and −½a(Δt − t)² where it falls.
+    /// True if the step's impulse on a row acts only in the time after a meeting. A pair that met at t and was not
+    /// struck since has no gap at t, so its gap at the end is (Δt − t) v^n, and −½a(Δt − t)² more if it falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
-    /// Takes note of a solved step: its impulse λ on a pair that met at t moves grains for the time that was left
-    /// alone, and not by Δt·λ.
-    /// Contacts are told what they transmitted in shocks and step.
+    /// Records a solved step. Its impulse λ on a pair that met at t moves grains only for the remaining time, and not
+    /// by Δt·λ. Also adds the impulses of shocks and step to the sums of the contacts.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -170,8 +168,8 @@ impl Shocks {
         }
     }
 
-    /// Moves grains by what shocks and falling within the step leave out of the way that their last velocity
-    /// tells.
+    /// Moves grains by the part of their displacement in the step that their last velocity does not give, because of
+    /// shocks and falling.
     pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {

@@ -1,53 +1,51 @@
 //! The shocks of a step under the law `range`.
 //!
-//! Collisions are instantaneous: neither gravity nor a bond, whose forces are finite, does anything in
-//! no time. So before the step proper, the grains that run into each other are brought to the
-//! velocities after their collisions, with neither gravity nor cohesion. A contact that closes with u
-//! bounces,
+//! Collisions are instantaneous: gravity and bonds have finite forces, and so no effect in zero time. So before the
+//! step proper, colliding grains are brought to the velocities after their collisions, without gravity and cohesion.
+//! A contact that closes with u bounces,
 //!
 //! > 0 ≤ P_n ⟂ u⁺ + ρ u⁻ ≥ 0.
 //!
-//! The step then goes on from v⁺ and bounces no more.
+//! The step then continues from v⁺, without bounces.
 //!
-//! **A pair that meets within the step** bounces in it, with the whole speed u that it has when it
-//! meets, along the normal that it has then (`contact::approach`). Slowed down to what closes its gap, and
-//! left to the next step to bounce, it would have the restitution φρ, φ being the part of the step that
-//! the gap takes: any number from 0 to ρ. An impulse at the moment t moves a grain for what is left of
-//! the step,
+//! **A pair that meets within the step** bounces in it, with its full speed u at the meeting, along its normal at the
+//! meeting (`contact::approach`). If it were slowed down to close its gap, and bounced in the next step, it would
+//! have the restitution φρ, with φ the fraction of the step that the gap takes: any value from 0 to ρ. An impulse at
+//! the time t moves a grain only for the rest of the step,
 //!
 //! > x^n = x + Δt v^n − Σ t Δv,
 //!
-//! so that a grain is on straight ways before and after, and meets others where it then is. The sum is the
-//! `offset` of a grain. A bond that a meeting makes lives from t on.
+//! so that a grain has straight paths before and after, and meets others at its actual place. The sum is the `offset`
+//! of a grain. The bond of a meeting exists from t on.
 //!
-//! **One after the other.** A pass takes those meetings that are the first of both their grains: what
-//! another collision deflects is not struck where it would have been. The next pass looks anew at the
-//! pairs of grains that were struck. What touches at that time is struck along with it, all at once, as
-//! under `moreau`: in a row of balls at rest that touch, all fly off together, while balls with gaps hand
-//! the shock on, and the last one alone flies off. Meetings of different moments that reach the same
-//! touching grains are struck at the first of these moments.
+//! **Sequence.** A pass takes the meetings that are the first of both their grains, because a grain deflected by
+//! another collision is not struck at its former place. The next pass examines the pairs of struck grains again.
+//! Contacts that touch at that time are struck together with the meeting, all at once, as under `moreau`: in a row of
+//! touching balls at rest all balls fly off together, while balls with gaps transmit the shock and only the last one
+//! flies off. Meetings at different times that reach the same touching grains are struck at the first of these times.
 //!
-//! **Gravity.** A grain that rests on nothing falls on the parabola x + v s + ½a s², and does so however it
-//! is cut into steps: what the step's last velocity tells too much of it, Δt v^n − ½aΔt², is taken off. Where it
-//! meets what is fixed, u = v_n + a_n t, and it is handed v⁺ such that with all of
-//! the step's gravity it ends with what it has had since: v⁺ + a_n t = −ρu. The works are those of the speeds at the
-//! meeting. What rests on something is held by it, for all that is known before the step is solved, and has u = v_n.
+//! **Gravity.** An unsupported grain falls on the parabola x + v s + ½a s², however it is divided into steps: the
+//! excess of the displacement by the last velocity, Δt v^n − ½aΔt², is subtracted. If the grain meets a fixed body,
+//! u = v_n + a_n t, and it gets v⁺ such that with the gravity of the whole step it ends with the gravity since the
+//! meeting: v⁺ + a_n t = −ρu. The works are those at the speeds of the meeting. A supported grain counts as held, as
+//! far as is known before the step is solved, and has u = v_n.
 //!
-//! **Bonds.** A bond that is stretched by s has C₀s to give back until its pair meets: u² = v_n² + 2C₀s/m_ij.
+//! **Bonds.** A bond with stretch s returns C₀s until its pair meets: u² = v_n² + 2C₀s/m_ij.
 //!
-//! **Why not in one problem with the step.** A bounce that is asked for together with v_n ≥ 0 of contacts that open
-//! can be asked for in vain: of two grains that rattle between others each is to be left and none can
-//! be. Then no solution is to be had. Asked for alone, v⁺ = −ρ v⁻ of all grains obeys every contact, and so does v = 0 in the step.
-//! For this, contacts that open have their term too: they may close by ρ v_n⁻, and are struck by the next pass if they do.
+//! **Why shocks are separate from the step.** If bounces were required together with v_n ≥ 0 of opening contacts, the
+//! problem might have no solution: two grains that rattle between others may each have to separate while neither can.
+//! On their own, v⁺ = −ρ v⁻ of all grains satisfies every contact of the shocks, and v = 0 every contact of the step.
+//! For this, opening contacts have their term too: they may close by ρ v_n⁻, and are struck by the next pass if they
+//! do.
 //!
-//! **Walls that a force drives** are struck in no shock: what hits such a wall would change its speed, and with that
-//! the moments of all that it is still to meet. The step proper stops what comes to it, and its unknown speed takes that
-//! up, so momentum and energy balance; but nothing bounces off it.
+//! **Walls driven by a force** take part in no shock: an impact would change the wall's speed, and so the times of
+//! all its later meetings. The step proper stops grains that reach such a wall, and the wall's unknown speed takes up
+//! their momentum. So momentum and energy balance, but nothing bounces off such a wall.
 //!
-//! **No energy is gained** by a pass without friction, for the reason that `remedies::sequential_impacts` gives.
+//! **No energy is gained** by a pass without friction, for the reason given in `remedies::sequential_impacts`.
 //!
-//! **How tightly.** As the step. Solved less tightly, with what that leaves of approach taken up by the
-//! step, shocks cost less, but slump may then depend on Δt. A pair that shares its grains with no other is solved exactly.
+//! **Tolerance.** The same as that of the step. With a larger tolerance, and the remaining approach left to the step,
+//! shocks cost less, but slump may then depend on Δt. A pair that shares its grains with no other is solved exactly.
 
 mod hand_over;
 mod next_impacts;
@@ -67,26 +65,28 @@ use crate::solver::{
 };
 use crate::world::World;
 
-/// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
-/// step, restitution is lost; larger: a wedge of grains that bounces ever faster holds the step up.
+/// Limit for the passes. Contacts that still close are then stopped by the step. If smaller, restitution is lost when
+/// many grains meet in a step; if larger, a wedge of grains that bounces ever faster takes long.
 const MOST_PASSES: u32 = 24;
 
-/// Contacts that were struck and close again are struck once more above this part of the fastest shock of
-/// the step. Smaller: clusters of touching grains take more passes; larger: restitution is lost in them.
+/// Speed, relative to the fastest shock of the step, above which contacts that were struck and close again are struck
+/// once more. If smaller, clusters of touching grains need more passes; if larger, restitution is lost in them.
 const LEAST_AGAIN: f64 = 1e-3;
 
-/// Grains that come to what they touch slower than this many steps of gravity rest on it. Smaller: in a pile
-/// at rest grains would be taken to fall; larger: a ball that has just come down would not have the speed of its fall.
+/// Approach speed, in steps of gravity, below which grains rest on bodies that they touch. If smaller, grains of a
+/// pile at rest would count as falling; if larger, a ball that has just come down would not have the speed of its
+/// fall.
 const RESTS_BELOW: f64 = 2.0;
 
-/// Meetings that are this part of Δt apart happen at once: symmetric motions stay symmetric.
+/// Meetings within this fraction of Δt happen at once, so that symmetric motions stay symmetric.
 const SAME_MOMENT: f64 = 1e-6;
 
-/// No moment of the step.
+/// A time that is never reached.
 const NEVER: f64 = f64::INFINITY;
 
-/// Takes a prepared problem through the shocks of its step: from then on its bodies begin with v⁺. What the shocks came
-/// to, if there were any: `gravity_work` is less what gravity did until meetings, since the step counts it once more.
+/// Takes a prepared problem through the shocks of its step; afterwards its bodies begin with v⁺. Returns the results
+/// of the shocks, if there were any. Their `gravity_work` subtracts the work of gravity before meetings, because the
+/// step counts it again.
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
@@ -117,129 +117,130 @@ pub(super) fn pass<M: Model>(
     result
 }
 
-/// A pair on its way through the shocks.
+/// State of a pair during the shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockPair {
     contact: Contact,
     is_bonded: bool,
-    /// How far its bond is open, m.
+    /// Stretch of its bond, m.
     stretch: f64,
-    /// n, from j to i: at the beginning of the step, or where it last met.
+    /// Normal n, from j to i: at the beginning of the step, or at its last meeting.
     normal: DVec2,
-    /// The gap along n at the beginning of the step, m; of one that has met, such that it closed then.
+    /// The gap along n at the beginning of the step, m. For a pair that has met, the value that makes it close at the
+    /// meeting.
     gap: f64,
-    /// What offsets have added to it, m.
+    /// Change of the gap by offsets, m.
     shift: f64,
-    /// v_n, relative to a wall that moves, m/s.
+    /// Normal velocity v_n, relative to a moving wall, m/s.
     speed: f64,
-    /// a_n of a grain that falls on what is fixed, m/s²; else 0.
+    /// Acceleration a_n of a grain that falls on a fixed body, m/s²; otherwise 0.
     acceleration: f64,
     touch: Touch,
     next: NextImpact,
-    /// What it has to do with the present pass.
+    /// Its role in the present pass.
     role: Role,
-    /// λ_n of its shocks, m/s.
+    /// Total λ_n of its shocks, m/s.
     impulse: f64,
-    /// The moment of the last of them, s.
+    /// Time of its last shock, s.
     struck_at: f64,
-    /// What gravity had given it by then, m/s.
+    /// Velocity that gravity had given it by then, m/s.
     gained: f64,
 }
 
-/// Whether a pair touches.
+/// State of contact of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Touch {
     Apart,
     FromStart,
-    /// It has closed a gap within the step.
+    /// The pair closed a gap within the step.
     Met,
 }
 
-/// When a pair is struck next.
+/// Next impact of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NextImpact {
-    /// To be found: its bodies go otherwise than before, or it is never looked for.
+    /// To be found, because its bodies' velocities have changed; or never searched for.
     Unknown,
     Never,
-    /// It touches, and closes from this moment (s) on.
+    /// The pair touches, and closes from this time (s) on.
     Closes(f64),
-    /// It meets.
+    /// The pair meets.
     Meets {
         secs: f64,
         normal: DVec2,
     },
 }
 
-/// What a pair has to do with a pass.
+/// Role of a pair in a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     Apart,
-    /// It touches, and is joined to what is struck.
+    /// The pair touches, and is connected to a struck pair.
     Joined,
-    /// Its own impact is the next one of both its grains.
+    /// Its impact is the next one of both its grains.
     Struck,
 }
 
-/// A grain on its way through the shocks.
+/// State of a grain during the shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockBody {
-    /// −Σ t Δv, an entry a degree of freedom, m.
+    /// Offset −Σ t Δv, one entry per degree of freedom, m.
     offset: [f64; 3],
-    /// What the last pass added to that, m.
+    /// Change of the offset in the last pass, m.
     shift: DVec2,
-    /// The moment of its last shock, s.
+    /// Time of its last shock, s.
     since: f64,
-    /// The moment of its next one, s, or [`NEVER`].
+    /// Time of its next shock, s, or [`NEVER`].
     next: f64,
     struck_in_step: bool,
     struck_in_pass: bool,
-    /// What gravity gives it in the step, m/s.
+    /// Velocity change by gravity in the step, m/s.
     gain: [f64; 3],
-    /// True where it rests against something or is bonded, and so does not fall freely.
+    /// True if it rests on a body or is bonded, and so does not fall freely.
     is_supported: bool,
-    /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
-    /// −Σ tλ of the impulses that the step has for pairs that met.
+    /// The part of its displacement that the step's last velocity does not give, m: −½aΔt² for a freely falling
+    /// grain, and −Σ tλ of the step's impulses on pairs that met.
     rest_of_way: DVec2,
-    /// A grain of the cluster that it is struck with.
+    /// A grain of its cluster, the grains that are struck together.
     root: u32,
-    /// Of a root: the moment of the cluster's shock, s, and its rows.
+    /// For a root: the time of the cluster's shock, s, and the number of its rows.
     cluster: (f64, u32),
 }
 
-/// What is known of shocks. Memory is kept from one step to the next.
+/// Data of shocks. Memory is kept from one step to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shocks {
     numbers: StepNumbers,
     pairs: Vec<ShockPair>,
     bodies: Vec<ShockBody>,
-    /// The impulses of shocks, by their rows, and of the step, by its contacts, along their normals of then.
+    /// Impulses of shocks, by row, and of the step, by contact, each along its normal at the time.
     of_shocks: Vec<(usize, (DVec2, Impulse))>,
     of_step: Vec<(DVec2, Impulse)>,
-    /// How far a contact may err in a step that is solved to a residual, N·s.
+    /// Largest error of a contact in a step that is solved to its residual, N·s.
     least: f64,
-    /// m_ij times the speed (m/s) and the speed that a contact which touches has to close with to be struck: above
-    /// what solves leave.
+    /// Smallest m_ij times closing speed (m/s), and smallest closing speed, for which a touching contact is struck.
+    /// Above the remaining error of solves.
     least_momentum: f64,
     least_closing: f64,
-    /// The fastest shock of the step so far, m/s.
+    /// Fastest shock of the step so far, m/s.
     fastest: f64,
 }
 
-/// Where shocks happen.
+/// Inputs of the shocks.
 struct ShockInputs<'a, M: Model> {
     problem: &'a StepProblem<M>,
     world: &'a World,
     candidates: &'a Candidates,
 }
 
-/// The grains of a row by its number: i, and j unless that is fixed.
+/// The grains of row `number`: i, and j unless it is fixed.
 fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<usize>) {
     let row = problem.rows.get(number);
     let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
-/// ‖m_n (v_n^free + what the law adds)‖ of a problem, N·s, which its residual is measured by.
+/// ‖m_n (v_n^free + term of the law)‖ of a problem, N·s, the scale of its residual.
 fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
@@ -249,20 +250,20 @@ fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     squared.sqrt()
 }
 
-/// The normal of a row, and the impulse of its (λ_n, λ_t), m/s.
+/// The normal of a row, and its impulse from (λ_n, λ_t), m/s.
 fn along_normal<M: Model>(row: &Row<M>, reduced: [f64; 2]) -> (DVec2, Impulse) {
     let [normal, tangential] = reduced.map(|along| row.effective_mass * along);
     (M::components(row.normal).into(), Impulse { normal, tangential })
 }
 
-/// Along x and y.
+/// The components along x and y.
 fn along_axes<M: Model>(body: &M::Body<f64>) -> DVec2 {
     let [x, y, _] = M::coordinates(body);
     if M::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
 }
 
 impl ShockBody {
-    /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
+    /// A grain without shocks so far, from its velocities before the step and after gravity alone.
     fn untouched<M: Model>(before: &M::Body<f64>, free: &M::Body<f64>) -> Self {
         let [before, free] = [before, free].map(M::coordinates);
         Self {
@@ -306,7 +307,7 @@ impl Shocks {
                 let rests = touches && speed.abs() <= RESTS_BELOW * libm::hypot(x, y);
                 bodies[grain].is_supported |= rests || is_cohesive && is_bonded;
             }
-            // The step proper stops what comes to a wall that gives way (see the module).
+            // The step proper stops grains that reach a driven wall (see the module).
             let touches = touches && !problem.gives_way(number);
             pairs.push(ShockPair {
                 contact,
@@ -340,7 +341,7 @@ impl Shocks {
 }
 
 impl NextImpact {
-    /// Its moment, s, or [`NEVER`].
+    /// Its time, s, or [`NEVER`].
     fn secs(self) -> f64 {
         match self {
             Self::Unknown | Self::Never => NEVER,
@@ -350,7 +351,7 @@ impl NextImpact {
 }
 
 impl ShockPair {
-    /// The gap along the normal at a moment, m: never above the gap itself.
+    /// The gap along the normal at a time, m. It never exceeds the gap itself.
     fn gap_at(&self, secs: f64) -> f64 {
         self.gap + self.shift + secs * (self.speed + 0.5 * self.acceleration * secs)
     }

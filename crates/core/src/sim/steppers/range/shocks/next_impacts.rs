@@ -1,4 +1,4 @@
-//! Which pairs are struck next, and with whom.
+//! Selection of the pairs that are struck next, and of the contacts struck with them.
 
 use glam::DVec2;
 
@@ -11,7 +11,7 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 
 impl Shocks {
-    /// Tells of each pair when it is struck next, and gives the first of these moments, s.
+    /// Finds the next impact of each pair, and returns the first time of these, s.
     pub(super) fn find_next<M: Model>(&mut self, at: &ShockInputs<'_, M>) -> f64 {
         let mut first = NEVER;
         for number in 0..self.pairs.len() {
@@ -27,7 +27,7 @@ impl Shocks {
         first
     }
 
-    /// a_n, m/s², of a grain that falls on what is fixed and has not met it yet.
+    /// Acceleration a_n, m/s², of a grain that falls on a fixed body and has not met it yet.
     fn acceleration<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> f64 {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
@@ -37,12 +37,12 @@ impl Shocks {
         pair.normal.dot(self.fall::<M>(i)) / self.numbers.time_step_secs
     }
 
-    /// What gravity gives a grain in the step, m/s.
+    /// Velocity change of a grain by gravity in the step, m/s.
     fn fall<M: Model>(&self, grain: usize) -> DVec2 {
         along_axes::<M>(&M::from_coordinates(self.bodies[grain].gain))
     }
 
-    /// How the grain of a row goes relative to the other body.
+    /// Motion of the grain of a row relative to the other body.
     pub(super) fn course<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -68,13 +68,13 @@ impl Shocks {
         RelativeMotion { offset, velocity, acceleration }
     }
 
-    /// The moment from which on both grains of a pair go as they do now, s.
+    /// The time since which both grains of a pair have had their present velocities, s.
     pub(super) fn since(&self, i: usize, j: Option<usize>) -> f64 {
         j.map_or(0.0, |j| self.bodies[j].since).max(self.bodies[i].since)
     }
 
-    /// True where a pair touches when its grains were struck last. Where they were struck by others since it met,
-    /// its normal is another one.
+    /// True if a pair touches at the last shock of its grains. If other grains have struck them since the pair met,
+    /// its normal has changed.
     pub(super) fn is_in_touch<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> bool {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -86,7 +86,7 @@ impl Shocks {
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
-    /// Normal and gap of a pair at a moment, s.
+    /// Normal and gap of a pair at a time, s.
     pub(super) fn approach<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -97,7 +97,7 @@ impl Shocks {
         self.course(at.problem, number).approach(at.world, at.candidates, contact, secs, M::AXES)
     }
 
-    /// When a pair is struck next.
+    /// The next impact of a pair.
     fn next_of<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> NextImpact {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -111,7 +111,7 @@ impl Shocks {
                 -pair.speed > least.max(self.least_closing) && momentum > self.least_momentum;
             return if closes { NextImpact::Closes(from) } else { NextImpact::Never };
         }
-        // The gap is no smaller than its tangents say.
+        // The gap is at least as large as its tangents.
         let [begin, end] = [from, self.numbers.time_step_secs].map(|secs| pair.gap_at(secs));
         if begin > 0.0 && end > 0.0 && pair.acceleration <= 0.0 {
             return NextImpact::Never;
@@ -119,7 +119,7 @@ impl Shocks {
         self.meeting(at, number, from).unwrap_or(NextImpact::Never)
     }
 
-    /// When a pair meets from a moment (s) on.
+    /// The meeting of a pair after the time `from` (s), if there is one.
     fn meeting<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -133,7 +133,7 @@ impl Shocks {
         Some(NextImpact::Meets { secs, normal })
     }
 
-    /// Looks for the very moment at which a pair closes that touches but for a last gap, and is struck alone.
+    /// Finds the exact time at which a pair closes that touches within the tolerance and is struck alone.
     pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
         for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);
@@ -149,8 +149,8 @@ impl Shocks {
         }
     }
 
-    /// Chooses what is struck in this pass, `first` being the earliest moment, s: pairs that are the next of
-    /// both their grains, and what touches then and is joined to them.
+    /// Chooses the pairs to be struck in this pass. `first` is the earliest time, s. Pairs are struck if they are the
+    /// next for both their grains, with all contacts that touch then and are connected to them.
     pub(super) fn choose<M: Model>(&mut self, problem: &StepProblem<M>, first: f64) {
         let StepNumbers { time_step_secs, touch, .. } = self.numbers;
         for (index, body) in self.bodies.iter_mut().enumerate() {
@@ -198,7 +198,7 @@ impl Shocks {
         }
     }
 
-    /// A grain of the cluster that a grain is struck with, the same one for all of it.
+    /// The representative grain of a grain's cluster.
     pub(super) fn root(&mut self, grain: usize) -> usize {
         let mut at = grain;
         while self.bodies[at].root as usize != at {

@@ -1,4 +1,4 @@
-//! One pass: what is struck is put into a problem of its own, solved, and taken over.
+//! One pass: the struck pairs form their own problem, which is solved and its result stored.
 
 use glam::DVec2;
 
@@ -10,16 +10,16 @@ use crate::solver::{
     StopTest, measure, solve, sweep,
 };
 
-/// Rows from which on shocks are solved no more tightly than the step.
+/// Number of rows above which shocks use only the tolerance of the step.
 const FEW: usize = 16;
 
-/// How tightly few rows are solved, which takes next to no time.
+/// Settings for few rows, which are solved to a small tolerance at almost no cost.
 const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
 
-/// Largest tolerance of shocks, which are small against the step's own velocities.
+/// Largest tolerance of shocks, which are small compared with the step's own velocities.
 const LOOSEST: f64 = 1e-3;
 
-/// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
+/// Solves shocks that share grains, to the tolerance of a step whose contacts may err by `least` (N·s).
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
     memory: &mut Memory,
@@ -48,8 +48,8 @@ fn solve_together<M: Model>(
 }
 
 impl Shocks {
-    /// Puts what is struck in this pass into `part`: either pairs that are struck alone, or all others.
-    /// True where there are any.
+    /// Fills `part` with the pairs struck in this pass: the pairs that are struck alone, or all others. Returns true
+    /// if there are any.
     pub(super) fn set_up<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -80,12 +80,12 @@ impl Shocks {
         part.bodies.mean_mass = problem.bodies.mean_mass;
         part.law = problem.law.with_capture_speed(0.0);
         part.hold_errors_against(problem);
-        // Bounds of other shocks are of those shocks' rows.
+        // Friction bounds of other shocks belong to their rows.
         part.forget_bounds();
         true
     }
 
-    /// What a shock adds to v_n of a row in its law, m/s. From now on the row is along the normal of a meeting.
+    /// The term that a shock adds to v_n of a row in its law, m/s. Also turns the row to the normal of a meeting.
     fn strike_row<M: Model>(&mut self, problem: &mut StepProblem<M>, number: usize) -> f64 {
         let numbers = self.numbers;
         let mut wall_speed = problem.wall_speed(number);
@@ -119,7 +119,8 @@ impl Shocks {
         bounce + gained - wall_speed
     }
 
-    /// Solves what was set up and takes it over; what is struck alone by one sweep, which is exact.
+    /// Solves the problem in `part` and stores the result. Pairs that are struck alone need one sweep, which is
+    /// exact.
     pub(super) fn solve<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -140,10 +141,10 @@ impl Shocks {
         let [wall_work, of_surfaces] =
             problem.surface_works_of(part, |number| part.rows.contacts[number] as usize);
         tangential_work += of_surfaces;
-        // Against the scale of the step, as all of it is.
+        // Relative to the scale of the step.
         let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
         if alone && settings.stop == StopTest::Residual {
-            // Exact but for rounding, which may be more than is asked for.
+            // Exact except for rounding, which may exceed the tolerance.
             report.converged = residual <= settings.tolerance;
         }
         let mut measures = Measures {
@@ -184,7 +185,7 @@ impl Shocks {
         }
     }
 
-    /// Tells the pairs of grains that were struck where these are now, and how fast they come.
+    /// Updates the gaps and speeds of the pairs of struck grains.
     pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
