@@ -40,7 +40,8 @@ pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
 pub(super) fn refused_file(path: &Path) -> String {
     let name = path.display();
     format!(
-        "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING}) nor a session (.{SESSION_ENDING})"
+        "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING}) nor a \
+            session (.{SESSION_ENDING})"
     )
 }
 

@@ -108,6 +108,10 @@ impl<'ast> Visit<'ast> for Imports<'_> {
         visit::visit_item(self, item);
     }
 
+    fn visit_visibility(&mut self, _: &'ast Visibility) {
+        // `pub(in super::super)` uses nothing.
+    }
+
     fn visit_path(&mut self, path: &'ast syn::Path) {
         let names: Vec<_> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
         if names.len() > 1 && ["crate", "self", "super"].contains(&names[0].as_str()) {

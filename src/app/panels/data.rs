@@ -32,7 +32,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
 fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let save = ui.button("Save state").on_hover_text(
-            "The moment that is shown as a .slump file in the folder: the run goes on from it bit for bit, here or with --restart.",
+            "The moment that is shown as a .slump file in the folder: the run goes on from it bit for bit, here or \
+                with --restart.",
         );
         context.note_control("Save state", save.rect);
         if save.clicked() {
@@ -52,7 +53,8 @@ fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// The field for a file that is opened.
 fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
-        let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
+        let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on \
+            the window, too.";
         let label = ui.label("Saved").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let is_named = !context.exports.data.saved_run.trim().is_empty();
@@ -77,7 +79,8 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     stretch(ui, context);
     let choices = &mut context.preferences.data;
     ui.horizontal(|ui| {
-        let hint = "Simulated time from one frame of grains and contacts to the next. What is measured of whole piles has a row each step in any case.";
+        let hint = "Simulated time from one frame of grains and contacts to the next. What is measured of whole \
+            piles has a row each step in any case.";
         let label = ui.label("A frame each").on_hover_text(hint);
         let every = DragValue::new(&mut choices.every_secs).range(EVERY[0]..=EVERY[1]);
         let every = every.speed(1e-3).max_decimals(9).suffix(" s");
@@ -168,7 +171,8 @@ fn export(ui: &mut Ui, context: &mut PanelContext<'_>, is_ready: bool) {
     let button = ui.add_enabled(is_ready && has_format, Button::new("Export data"));
     context.note_control("Export data", button.rect);
     let button = button
-        .on_hover_text("Computes what was recorded once more, bit for bit, and writes it down; the run may go on meanwhile.")
+        .on_hover_text("Computes what was recorded once more, bit for bit, and writes it down; the run may go on \
+            meanwhile.")
         .on_disabled_hover_text("Choose a format first.");
     if !button.clicked() {
         return;

@@ -95,7 +95,8 @@ pub(super) fn light(ui: &Ui, context: &PanelContext<'_>) {
 }
 
 /// What is said in place of a lesson's sentences where they are no longer true.
-const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has it as it was.";
+const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has \
+    it as it was.";
 
 /// All lessons, to be gone to; the one that was left is marked.
 fn list(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {

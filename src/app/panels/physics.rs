@@ -31,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
 fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     let before = settings.stepper;
     ui.horizontal(|ui| {
-        ui.label("Stepper").on_hover_text("The way to step, with its contact law.");
+        ui.label("Stepper").on_hover_text("The contact law and the way to take a step.");
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().button_padding.x = 5.0;
         for &stepper in Stepper::ALL {

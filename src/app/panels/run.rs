@@ -32,7 +32,8 @@ const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     (
         Deposition::DropAndRoll,
         "Roll",
-        "Each grain rolls to where two others hold it: seconds for thousands, but another pile, denser and with more bonds.",
+        "Each grain rolls to where two others hold it: seconds for thousands, but another pile, denser and with \
+            more bonds.",
     ),
 ];
 

@@ -82,7 +82,10 @@ pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
             ui.add(value).labelled_by(label.id);
         }
         ui.label(RichText::new("px").weak());
-        let save = ui.button("Save PNG").on_hover_text("What is seen here, with all worlds that are compared (S). The file says which command makes it.");
+        let save = ui.button("Save PNG").on_hover_text(
+            "What is seen here, with all worlds that are compared (S). \
+            The file says which command makes it.",
+        );
         if save.clicked() {
             save_picture(ui.ctx(), context);
         }
@@ -107,8 +110,10 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
-        let video_hint = "What was recorded of all worlds, or the stretch that is named below, as MP4. The run may go on meanwhile.";
-        let gif_hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and larger files.";
+        let video_hint = "What was recorded of all worlds, or the stretch that is named below, as MP4. The run may \
+            go on meanwhile.";
+        let gif_hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and \
+            larger files.";
         let missing = check_ffmpeg("given").err();
         let formats = [
             (FilmFormat::Video, "Save video", missing, video_hint),

@@ -81,7 +81,7 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 /// Shows the method, and all others to be chosen from; a model of friction that the chosen one does not take is left
 /// out.
 fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
-    let label = ui.label("Method").on_hover_text("How the impulses of a step are found.");
+    let label = ui.label("Method").on_hover_text("The solver that finds the impulses of a step.");
     let mut method = solver.method;
     let list = ComboBox::from_id_salt("method").width(100.0).selected_text(method.name());
     let shown = list.show_ui(ui, |ui| {

@@ -31,7 +31,8 @@ const OTHERWISE: &str = "mean(kinetic_energy)";
 const FEW: f64 = 0.01;
 
 /// The answer before the first one.
-const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, and hours for thousands.";
+const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, \
+    and hours for thousands.";
 
 /// The word in the status bar, and the list behind it.
 #[derive(Default)]
@@ -143,7 +144,8 @@ impl TrustPanel {
     /// What the error budget says, or how far it is.
     fn show_budget(&self, ui: &mut Ui, run: &WatchedRun) {
         if IN_BROWSER {
-            let text = "A page has no idle cores: slump budget, with the command line of this run, computes its error budget.";
+            let text = "A page has no idle cores: slump budget, with the command line of this run, computes its \
+                error budget.";
             ui.label(RichText::new(text).weak());
             return;
         }

@@ -359,7 +359,8 @@ words! {
         Csv = "csv", "Text with commas";
         Vtk = "vtk", "Files of VTK, for ParaView";
         Ovito = "ovito", "Dumps as LAMMPS writes them, for OVITO";
-        Fields = "fields", "Density, velocity and stress on a grid, smoothed over a mean diameter, as images for ParaView";
+        Fields = "fields", "Density, velocity and stress on a grid, smoothed over a mean diameter, as images for \
+            ParaView";
     }
 }
 

@@ -126,7 +126,8 @@ fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     let [least, most] =
         [distances.clone().fold(f64::INFINITY, f64::min), distances.fold(0.0, f64::max)];
     println!(
-        "{name}: {} solves, off by {least:.0e} to {most:.0e}, {share:.3} told too little; told over distance {:.2}, {:.2}, {:.1}, {:.1}, {:.0} (0, 5, 50, 95, 100 %)",
+        "{name}: {} solves, off by {least:.0e} to {most:.0e}, {share:.3} told too little; told over distance {:.2}, \
+            {:.2}, {:.1}, {:.1}, {:.0} (0, 5, 50, 95, 100 %)",
         ratios.len(),
         at(0.0),
         at(0.05),

@@ -13,8 +13,9 @@ words! {
     #[derive(Default)]
     pub enum Deposition {
         #[default]
-        Rain = "rain", "They fall together through a medium, as for the shipped state: minutes for 2,000 grains";
-        DropAndRoll = "drop-and-roll", "One by one, each rolling to where two others hold it: a denser pile with more contacts, in seconds for 10,000 grains";
+        Rain = "rain", "All grains fall together through a medium, as in the shipped pile; minutes for 2,000 grains";
+        DropAndRoll = "drop-and-roll", "Grains are placed one by one and roll until two others hold them: a denser \
+            pile with more contacts; seconds for 10,000 grains";
     }
 }
 

@@ -5,8 +5,8 @@ use crate::setting::{Group, words};
 use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
-/// Gap below which grains touch, in d, so that contacts opened by rounding errors of a step survive.
-const GAP_TOLERANCE: f64 = 1e-3;
+/// Touch tolerance, in d, so that contacts opened by the errors of a step stay in touch.
+const TOUCH_TOLERANCE: f64 = 1e-3;
 /// Contacts slower than this many g·Δt do not bounce. Nearly every step then has a solution.
 const RESTITUTION_THRESHOLD: f64 = 2.0;
 /// Tolerance on the residual of each step.
@@ -16,17 +16,15 @@ const MAX_SWEEPS: u32 = 5_000;
 words! {
     /// A group of settings that are used together.
     pub enum Preset {
-        Paper = "paper", "The paper's scheme as its figures are computed: Gauss-Seidel to a relative change of 1e-7";
-        Robust = "robust", "Remedies together: hard scenes hold, and the paper's effects of the time step are gone";
+        Paper = "paper", "The scheme of the paper's figures: Gauss-Seidel to a relative change of 1e-7, touch tolerance 0";
+        Robust = "robust", "Newton's method and remedies together: most hard scenes pass, and the paper's effect of \
+            the time step is gone";
     }
 }
 
 impl Preset {
     /// Changes the settings of a scene.
     pub fn apply(self, scene: &mut Scene) {
-        if self == Self::Robust {
-            scene.gap_tolerance = scene.gap_tolerance.max(GAP_TOLERANCE * scene.mean_diameter);
-        }
         let mut settings = scene.settings();
         self.apply_to_settings(&mut settings);
         scene.set_settings(settings);
@@ -51,6 +49,8 @@ impl Preset {
 fn make_robust(settings: &mut Settings) {
     let threshold = &mut settings.parameters.restitution_threshold;
     *threshold = threshold.max(RESTITUTION_THRESHOLD);
+    let tolerance = &mut settings.parameters.touch_tolerance;
+    *tolerance = tolerance.max(TOUCH_TOLERANCE);
     settings.solver = SolverSettings {
         method: Method::Newton,
         stop: StopTest::Residual,

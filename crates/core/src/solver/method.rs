@@ -8,15 +8,16 @@ words! {
         Nsgs = "nsgs", "non-linear Gauss-Seidel: one contact after the other, exact for each";
         NsgsParallel = "nsgs-parallel",
             "Gauss-Seidel by tiles and colours: four contacts at a time, large piles on several threads";
-        Newton = "newton", "semi-smooth Newton, sparse direct: all contacts together, for tight tolerances";
+        Newton = "newton", "semi-smooth Newton with sparse factorisation: all contacts at once, for tight tolerances";
         Nncg = "nncg", "conjugate gradients over Gauss-Seidel sweeps: fewer sweeps to tight tolerances";
         Apgd = "apgd", "accelerated projected gradients with restart: all contacts at once, no order";
         Admm = "admm", "alternating directions of multipliers: one cached factorisation, many solves";
         Jacobi = "jacobi", "Jacobi with mass splitting: all contacts at once, each with its part of the mass";
         InteriorPoint = "interior-point",
-            "interior point, sparse direct: the convex models of friction to any tolerance";
+            "interior point with sparse factorisation: convex friction models to any tolerance";
         Auto = "auto",
-            "newton under Coulomb's law, nncg while a large pile flows; interior-point under convex models of friction";
+            "newton under Coulomb's law, but nncg while a large pile flows; interior-point under convex friction \
+                models";
     }
 }
 

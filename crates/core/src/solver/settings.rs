@@ -11,10 +11,10 @@ words! {
     pub enum StopTest {
         RelativeChange = "relative-change", "‖ΔP‖ of a sweep over ‖P‖";
         ImpulsePerMass = "impulse-per-mass", "sum of |ΔP| of a sweep over the mean mass, m/s";
-        Residual = "residual", "the residual that judges all methods";
+        Residual = "residual", "residual of the contact laws, the same for all solvers";
         #[default]
         VelocityError = "velocity-error",
-            "how far velocities are off in the root mean square, over √(g d) together with what contacts undo";
+            "estimated root mean square error of the velocities, divided by √(g d) and the speeds that contacts cancel";
     }
 }
 
@@ -25,14 +25,14 @@ words! {
     pub enum FrictionModel {
         #[default]
         Coulomb = "coulomb",
-            "Coulomb's law itself (M. Jean, 1999); not convex, so a large step may not be solved in any time";
+            "Coulomb's law (M. Jean, 1999); it is not convex, so some steps of large piles are not solved";
         Tresca = "tresca",
-            "bounds μN that fifty sweeps under Coulomb's law lead to (P. D. Panagiotopoulos, 1975); friction is a little behind \
-             on large piles";
+            "bounded friction: μN of fifty Coulomb sweeps is the bound (P. D. Panagiotopoulos, 1975); on large \
+                piles friction lags behind the pressure";
         Associated = "associated",
-            "cone complementarity (M. Anitescu, 2006); what slides opens by Δt·μ·v_t a step, and bonds break";
+            "cone complementarity (M. Anitescu, 2006); a sliding contact opens by Δt·μ·v_t per step, and bonds break";
         Desaxce = "desaxce",
-            "associated less the last μ|v_t| (G. de Saxcé, Z.-Q. Feng, 1998); what slides faster still opens";
+            "associated, minus the last μ|v_t| (G. de Saxcé, Z.-Q. Feng, 1998); contacts that accelerate still open";
     }
 }
 
@@ -64,63 +64,63 @@ settings! {
     /// reported ([`Measures::velocity_error`](super::Measures)).
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
-        method: Method = Method::Auto, "solver" ("NAME"), "Method that solves each step", {
-            control: shown("Method", "How the impulses of a step are found."),
+        method: Method = Method::Auto, "solver" ("NAME"), "Solver of each step", {
+            control: shown("Method", "The solver that finds the impulses of a step."),
         }
         #[serde(skip_serializing_if = "is_default")]
         ordering: Ordering = Ordering::Interleaved, "ordering" ("ORDER"),
-            "In which order a sweep visits the contacts", {
-            control: shown("Order", "In which order a sweep visits contacts."),
+            "Order in which a sweep visits the contacts", {
+            control: shown("Order", "Order in which a sweep visits the contacts."),
         }
-        stop: StopTest = StopTest::VelocityError, "stop" ("TEST"), "What the tolerance refers to", {
-            control: shown("Stops on", "What the tolerance refers to."),
+        stop: StopTest = StopTest::VelocityError, "stop" ("TEST"), "Stopping test: the quantity that the tolerance \
+            limits", {
+            control: shown("Stops on", "The quantity that the tolerance limits."),
         }
         /// In the unit of `stop`.
-        tolerance: f64 = 1e-4, "tolerance" ("X"), "How well each step is solved, in the unit of the stopping test", {
+        tolerance: f64 = 1e-4, "tolerance" ("X"), "Tolerance of each step, in the unit of the stopping test", {
             allowed: "a finite number > 0",
             holds: |value| value > 0.0 && value.is_finite(),
             control: Some(Control {
                 label: "Tolerance",
-                hint: "How well each step is solved; the answer depends on it.",
+                hint: "Tolerance of each step; the result depends on it.",
                 range: [1e-12, 1e-1],
                 logarithmic: true,
                 ..Control::PLAIN
             }),
         }
         /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not converged.
-        max_sweeps: u32 = 5_000, "max-sweeps", "A step that needs more sweeps is reported as not converged; solver auto may give up earlier", {
+        max_sweeps: u32 = 5_000, "max-sweeps", "Most sweeps per step; a step that needs more is reported as unsolved; the solver auto may stop earlier", {
             allowed: "at least 1",
             holds: |value| value > 0,
             control: Some(Control {
                 label: "Sweep limit",
-                hint: "A step that needs more sweeps (or iterations) is reported as not converged.",
+                hint: "A step that needs more sweeps (or iterations) is reported as unsolved.",
                 range: [1.0, 100_000.0],
                 logarithmic: true,
                 ..Control::PLAIN
             }),
         }
-        warm_start: bool = true, "warm-start", "Whether each step starts from the impulses of the one before", {
-            control: shown("Warm start", "Each step starts from the impulses of the one before."),
+        warm_start: bool = true, "warm-start", "Start each step from the impulses of the step before", {
+            control: shown("Warm start", "Each step starts from the impulses of the step before."),
         }
         friction_model: FrictionModel = FrictionModel::Coulomb, "friction-model" ("MODEL"),
-            "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
-             `slump list` says what each gets wrong", {
+            "Friction model: Coulomb's law, or a convex model instead; `slump list friction-models` says what each \
+                model gets wrong", {
             needs: Needs::Friction,
             control: shown(
                 "Friction",
-                "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
+                "Coulomb's law, or a convex model of friction instead.",
             ),
         }
         model_solves: u32 = 1, "model-solves",
-            "How often each step is solved under tresca or desaxce, what they hold taken anew each \
-             time: 1 is the cheapest, more come nearer to Coulomb's law", {
+            "Solves per step under tresca or desaxce, with updated bounds each time; more solves approach Coulomb's \
+                law and cost more", {
             allowed: "between 1 and 1000",
             holds: |value| (1..=1000).contains(&value),
             needs: Needs::Friction,
             control: Some(Control {
                 label: "Solves a step",
-                hint: "How often a step is solved, friction's bounds taken anew each time: more come nearer \
-                       to Coulomb's law.",
+                hint: "Solves per step, with updated friction bounds each time; more solves approach Coulomb's law.",
                 range: [1.0, 16.0],
                 ..Control::PLAIN
             }),

@@ -35,7 +35,8 @@ settings! {
     /// The default is the paper's scheme at Δt = 1e-3 s, without cohesion, restitution or friction.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
         /// Bond number: C₀ = Bond · m_ij · a (paper eq. 10), where a is [`Parameters::cohesion_acceleration`].
-        bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force over effective weight, at least 0", {
+        bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force divided by the effective weight of a \
+            contact, at least 0", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
@@ -50,13 +51,13 @@ settings! {
         }
         #[serde(default, skip_serializing_if = "is_zero")]
         bond_acceleration: f64 = 0.0, "bond-acceleration" ("A"),
-            "Acceleration a of the cohesion force Bond·m·a, m/s²; 0 takes the scene's gravity", {
+            "Acceleration a in the cohesion force Bond·m·a, m/s²; 0 uses the gravity of the scene", {
             allowed: "a finite number of m/s² ≥ 0; 0 takes the scene's gravity",
             holds: |value| value >= 0.0 && value.is_finite(),
             needs: Needs::Cohesion,
         }
         /// Time step Δt, s.
-        time_step_secs: f64 = 1e-3, "dt" ("SECONDS"), "Time step, seconds", {
+        time_step_secs: f64 = 1e-3, "dt" ("SECONDS"), "Time step Δt, seconds", {
             allowed: "a finite number of seconds > 0",
             holds: |value| value > 0.0 && value.is_finite(),
             control: Some(Control {
@@ -77,7 +78,7 @@ settings! {
             control: Some(Control {
                 label: "ρ, restitution",
                 symbol: "ρ",
-                hint: "Part of the approach speed with which grains bounce apart.",
+                hint: "Fraction of the approach speed with which grains bounce apart.",
                 ..Control::PLAIN
             }),
         }
@@ -97,7 +98,7 @@ settings! {
         }
         #[serde(default)]
         cone: FrictionCone = FrictionCone::Shifted, "cone" ("CONE"),
-            "Which part of the normal force bounds friction", {
+            "Part of the normal force that bounds friction", {
             needs: Needs::Friction,
         }
         /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
@@ -106,8 +107,8 @@ settings! {
         /// solution. Bounces slower than about 2 g·Δt are too small to be seen.
         #[serde(default)]
         restitution_threshold: f64 = 0.0, "restitution-threshold" ("X"),
-            "Contacts slower than this many g·dt do not bounce; 0 in the paper's scheme, 2 lets \
-             nearly every step be solved", {
+            "Contacts that close slower than this many g·dt do not bounce; the paper has 0; with 2 nearly every \
+                step has a solution", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
@@ -115,7 +116,7 @@ settings! {
         /// grain between two bonded ones.
         #[serde(default = "default_debonding_distance")]
         debonding_distance: f64 = DEBONDING_DISTANCE, "debonding-distance" ("D"),
-            "Debonding distance of the stepper range, in mean diameters", {
+            "Distance by which a bond of the stepper range opens before it breaks, in mean diameters", {
             allowed: "above 0 and at most 0.1 diameters",
             holds: |value| value > 0.0 && value <= 0.1,
             needs: Needs::Cohesion,
@@ -123,7 +124,7 @@ settings! {
                 label: "δc, debonding distance",
                 symbol: "δc",
                 unit: "d",
-                hint: "How far a bond is opened before it breaks, in mean diameters.",
+                hint: "Distance by which a bond opens before it breaks, in mean diameters.",
                 range: [1e-3, 0.1],
                 logarithmic: true,
                 ..Control::PLAIN
@@ -133,23 +134,23 @@ settings! {
         /// ones.
         #[serde(default = "default_touch_tolerance")]
         touch_tolerance: f64 = TOUCH_TOLERANCE, "touch-tolerance" ("D"),
-            "Gap up to which grains touch, and pull if they cohere, in mean diameters; they push each other \
-             at gap 0 alone. 0 in the paper's scheme", {
+            "Largest gap at which grains touch, and cohere if they have cohesion, in mean diameters; they push each \
+                other only at gap 0; the paper has 0", {
             allowed: "between 0 and 0.1 diameters",
             holds: |value| (0.0..=0.1).contains(&value),
             control: Some(Control {
                 label: "Touch tolerance",
                 symbol: "τ",
                 unit: "d",
-                hint: "Gap up to which grains touch, and pull if they cohere, in mean diameters.",
+                hint: "Largest gap at which grains touch, and cohere if they have cohesion, in mean diameters.",
                 range: [0.0, 0.1],
                 ..Control::PLAIN
             }),
         }
         #[serde(default, skip_serializing_if = "is_zero")]
         tilt: f64 = 0.0, "tilt" ("DEGREES"),
-            "Angle by which gravity is turned against how the scene has it, degrees: above 0 towards the right \
-             where it points down", {
+            "Angle by which the gravity of the scene is turned, degrees; a positive angle turns downward gravity to \
+                the right", {
             allowed: "between -180 and 180 degrees",
             holds: |value| (-180.0..=180.0).contains(&value),
             needs: Needs::Direction,
@@ -157,22 +158,22 @@ settings! {
                 label: "Tilt",
                 symbol: "tilt",
                 unit: "°",
-                hint: "Turns gravity to the right above 0, as if all that is fixed were tilted to the right.",
+                hint: "Turns gravity; a positive angle acts like tilting the ground to the right.",
                 range: [-45.0, 45.0],
                 ..Control::PLAIN
             }),
         }
         #[serde(default, skip_serializing_if = "is_zero")]
         stiffness: f64 = 0.0, "stiffness" ("K"),
-            "Stiffness of the springs of the stepper dem, N/m; 0 takes it from the pile's weight", {
+            "Stiffness of the springs of the stepper dem, N/m; 0 derives it from the weight of the pile", {
             allowed: "a finite number of N/m ≥ 0; 0 takes it from the pile's weight",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
                 label: "k, stiffness",
                 symbol: "k",
                 unit: "N/m",
-                hint: "Force by overlap: a softer bond takes more work to break. 0 takes the stiffness at which \
-                       the pile's own weight makes an overlap of 1e-3 d.",
+                hint: "Force per overlap; a softer bond takes more work to break. At 0 the stiffness is chosen so \
+                    that the weight of the pile makes an overlap of 1e-3 d.",
                 range: [0.0, 1e5],
                 logarithmic: true,
                 ..Control::PLAIN
@@ -182,27 +183,27 @@ settings! {
         /// that follows from ρ; a contact without damping is still possible with ρ = 1.
         #[serde(default, skip_serializing_if = "is_zero")]
         damping_ratio: f64 = 0.0, "damping-ratio" ("ZETA"),
-            "Damping ratio of the contacts of the stepper dem, in place of rho; 0 takes it from rho", {
+            "Damping ratio of the contacts of the stepper dem; 0 derives it from rho", {
             allowed: "a finite number ≥ 0; 0 takes it from the restitution",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
                 label: "ζ, damping ratio",
                 symbol: "ζ",
-                hint: "Dashpot of a contact by itself, in that of critical damping, in place of ρ. 0 takes what ρ \
-                       asks for.",
+                hint: "Damping of a single contact divided by critical damping. 0 derives it from ρ.",
                 range: [0.0, 2.0],
                 ..Control::PLAIN
             }),
         }
         #[serde(default, skip_serializing_if = "is_zero")]
         substeps: u32 = 0, "substeps",
-            "Substeps of a step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable", {
+            "Substeps per step; 0 means 4 for tgs-soft, 1 for avbd, and for dem the number that keeps it stable", {
             allowed: "at most 100000; 0 leaves it to the stepper",
             holds: |value| value <= MAX_SUBSTEPS,
             control: Some(Control {
                 label: "Substeps",
                 symbol: "substeps",
-                hint: "Substeps of each step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable.",
+                hint: "Substeps per step; 0 means 4 for tgs-soft, 1 for avbd, and for dem the number that keeps it \
+                    stable.",
                 range: [0.0, 100.0],
                 ..Control::PLAIN
             }),

@@ -33,7 +33,8 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "velocity_error",
         "m/s",
-        "how far velocities are taken to be from Coulomb's law: root mean square, weighted with mass, over the grains that touch something",
+        "how far velocities are taken to be from Coulomb's law: root mean square, weighted with mass, over the \
+            grains that touch something",
         Number(|row| row.velocity_error),
     ),
     column("contacts", "", "contacts", Count(|row| row.contacts.into())),

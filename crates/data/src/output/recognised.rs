@@ -30,14 +30,17 @@ const BEGINNINGS: [(&[u8], &[u8]); 13] = [
     (b"ITEM: TIME\n", b"\nITEM: ENTRIES id name motion "),
     (b"slump-state ", b""),
     (
-        b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <ImageData WholeExtent=\"",
+        b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+            header_type=\"UInt64\">\n  <ImageData WholeExtent=\"",
         b" Name=\"smoothing_width\" ",
     ),
 ];
 /// First bytes of formats that have no field for the program that wrote them.
 const OF_VTK: [&[u8]; 2] = [
-    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
-    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
+    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
+        byte_order=\"LittleEndian\">\n<Collection>\n",
+    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+        header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
 ];
 /// First bytes, after its length, of a state that waits to be drawn.
 const STATE: &[u8] = b"\x82\xa6number";

@@ -50,7 +50,10 @@ impl std::str::FromStr for BudgetQuantity {
         let (statistic, column) = of.unwrap_or((None, text));
         let (column, unit) = column_of(column).ok_or_else(|| {
             let names = names().collect::<Vec<_>>().join(", ");
-            let allowed = format!("mean(x), min(x), max(x), total(x), or x itself for its last value, where x is one of {names}");
+            let allowed = format!(
+                "mean(x), min(x), max(x), total(x), or x itself for its last value, where x is \
+                one of {names}"
+            );
             Error::value("quantity", text, allowed)
         })?;
         let unit = if unit == "1" { "" } else { unit };

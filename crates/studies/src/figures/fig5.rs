@@ -82,7 +82,8 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
     let of_paper = chart(&all, "On the paper's axes", x, y, "mean_overlap");
     let caption = vec![format!(
-        "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
+        "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in \
+            no mean.",
         rows.values("seed").len()
     )];
     let sheet = Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption };

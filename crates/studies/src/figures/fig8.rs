@@ -113,7 +113,8 @@ fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
 fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     let agreed = agreed(rows);
     Claim::new(
-        "§4: open at Δt = 1…6·10⁻⁴ s, closed at 7·10⁻⁴…3·10⁻³, open at 4·10⁻³, closed at 5·10⁻³, open at 6·10⁻³ and 10⁻²",
+        "§4: open at Δt = 1…6·10⁻⁴ s, closed at 7·10⁻⁴…3·10⁻³, open at 4·10⁻³, closed at 5·10⁻³, open at 6·10⁻³ and \
+            10⁻²",
         format!(
             "{agreed} of {} of these outcomes, from a start distance that was searched for",
             PAPER.len()
@@ -179,7 +180,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
         let intervals = ends.and_then(|(first, last)| first.interval.zip(last.interval));
         let rises = intervals.is_some_and(|(first, last)| last.0 > first.1);
         Claim::new(
-            format!("Beyond the paper: at Δt ≥ 4·10⁻³ s, stopped at {tolerance:e} m/s, the share of lost bonds rises with Δt"),
+            format!("Beyond the paper: at Δt ≥ 4·10⁻³ s, stopped at {tolerance:e} m/s, the share of lost bonds \
+                rises with Δt"),
             format!("{} s", listed.join(", ")),
             rises.into(),
         )

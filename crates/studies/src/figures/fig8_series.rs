@@ -76,7 +76,11 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     (near.y.from, near.y.to) = (1.0 - 0.05 * (highest - 1.0), 1.0 + 1.05 * (highest - 1.0));
     let mut far = chart(&runs, "the same on the paper's axes", 0.0, ENDS.0)?;
     (far.y.from, far.y.to) = (0.0, ENDS.1);
-    let caption = vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
+    let caption = vec![
+        "k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell \
+        its own."
+            .into(),
+    ];
     let sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption };
     let claims = vec![swings(&runs), caught(&runs), cluster(&runs), one_velocity(&runs)];
     let claims = claims.into_iter().map(|claim| claim.hanging_on(CHOICES)).collect();

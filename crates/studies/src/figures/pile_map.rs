@@ -150,7 +150,8 @@ fn claim(groups: &[Alike], states: usize) -> Claim {
         p_value(depth(groups).p_above(0.0))
     );
     Claim::new(
-        "Beyond the paper: over the plane of Bond and Δt the slump is lower near a cohesive time of 1 than away from it",
+        "Beyond the paper: over the plane of Bond and Δt the slump is lower near a cohesive time of 1 than away \
+            from it",
         measured.replace('-', "−"),
         verdict(depth(groups)),
     )

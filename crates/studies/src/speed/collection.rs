@@ -118,7 +118,8 @@ impl CollectionPlan {
         let friction = friction.map_or(String::new(), |it| format!(", μ {it}"));
         let name = |[bond, step, time]: [f64; 3]| {
             format!(
-                "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time}, threshold {restitution_threshold}"
+                "{grains} grains{place}, Bond {bond}{friction}, dt {step:e}, t {time}, threshold \
+                    {restitution_threshold}"
             )
         };
         self.steps().into_iter().map(name).collect()

@@ -128,7 +128,8 @@ fn sheet(bench: &Bench, all: &[SearchedStep]) -> Sheet {
     }
     let caption = bench.caption(&[
         &format!(
-            "A ring a step, at the largest distance of two of its solutions; those of one solution at the lower edge. μ = {}; Δt = {} s.",
+            "A ring a step, at the largest distance of two of its solutions; those of one solution at the lower \
+                edge. μ = {}; Δt = {} s.",
             listed(FRICTIONS, |it| it.to_string()),
             listed(TIME_STEPS_SECS, |it| format!("{it:e}"))
         ),

@@ -214,10 +214,12 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
             let mut caption = vec![
-                "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still shaking or not finite.".to_owned(),
+                "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still \
+                    shaking or not finite.".to_owned(),
             ];
             caption.push(if map.can_swing() {
-                "Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing."
+                "Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 \
+                    here lowers it by 5 %. Springs may swing."
             } else {
                 "Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs."
             }.to_owned());

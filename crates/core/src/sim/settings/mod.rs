@@ -62,14 +62,15 @@ impl Settings {
     pub const STEPPER: About = About {
         name: "stepper",
         value_name: "NAME",
-        help: "The way to step, with its contact law: moreau is the paper's; others in `slump list`",
+        help: "Stepper: the contact law and the way to take a step; moreau is that of the paper (`slump list \
+            steppers`)",
         heading: "Physics",
         kind: Stepper::KIND,
         needs: Needs::Nothing,
         control: Some(Control {
             label: "Stepper",
             symbol: "stepper",
-            hint: "The way to step, with its contact law.",
+            hint: "The contact law and the way to take a step.",
             ..Control::PLAIN
         }),
     };

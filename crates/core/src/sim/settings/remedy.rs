@@ -38,21 +38,21 @@ settings! {
     #[serde(default)]
     pub struct Remedies, changes RemedyChanges, heading "Solver" {
         push_out: bool = false, "push-out",
-            "Push overlap out by moving grains apart after each step, without giving them speed", {
+            "Remove overlap after each step by moving grains apart, without giving them speed", {
             control: shown(
                 "Push overlap out",
                 "Grains that overlap are moved apart after each step, without speed.",
             ),
         }
         max_travel: f64 = 0.0, "max-travel" ("D"),
-            "Cut steps into pieces in which no grain moves further than this, in diameters, but \
-             into 100 at the most; 0 never does", {
+            "Cut a step into at most 100 pieces so that no grain moves further than this in a piece, in mean \
+                diameters; 0 never cuts", {
             allowed: "a finite number of diameters ≥ 0; 0 never cuts a step",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
         sequential_impacts: bool = false, "sequential-impacts",
-            "Have shocks run through touching grains one after the other, as in Newton's cradle; \
-             not with cohesion", {
+            "Let shocks travel through touching grains one after the other, as in Newton's cradle; without effect \
+                under cohesion", {
             control: shown(
                 "Shocks in sequence",
                 "Shocks run through touching grains one after the other, as in Newton's cradle; \
@@ -60,8 +60,7 @@ settings! {
             ),
         }
         speculative: bool = false, "speculative",
-            "Let pairs that would close their gap within a step close it and no more, so that \
-             nothing tunnels; it costs bounces", {
+            "Stop pairs that would meet within a step at gap 0, so that no grain passes another one; bounces get weaker", {
             control: shown(
                 "Look ahead",
                 "Pairs that would meet within a step close their gap and no more: nothing \

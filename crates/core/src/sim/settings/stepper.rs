@@ -13,11 +13,12 @@ words! {
     #[derive(Default)]
     pub enum Stepper {
         #[default]
-        Moreau = "moreau", "the paper's law: a contact and its bond live while the gap is negative";
-        Range = "range", "a bond lives until it has been opened by δc, whatever Δt";
+        Moreau = "moreau", "the law of the paper: a contact and its bond end when the grains separate";
+        Range = "range", "a bond breaks when it has been opened by δc, at any Δt";
         TgsSoft = "tgs-soft",
-            "substeps with soft contacts and a relaxing sweep, as game engines step";
-        Avbd = "avbd", "augmented vertex block descent: stiffening penalties, body by body, as game engines try";
+            "substeps with soft contacts and a relaxing sweep, as in game engines";
+        Avbd = "avbd", "augmented vertex block descent: penalties that stiffen, body by body, as in recent game \
+            engines";
         Dem = "dem", "smooth discrete elements: springs, dashpots and a constant attraction";
     }
 }

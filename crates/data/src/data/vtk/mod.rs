@@ -173,7 +173,8 @@ impl Format for Vtk {
                 is_whole(&path) && moment_of(&path).is_ok_and(|(step, _)| Some(step) <= last_frame)
             };
             if let Some(lost) = (0..mark.frames).find(|number| !is_there(number)) {
-                let reason = "is missing or cut, but must be as the saved run left it; --overwrite starts the run again";
+                let reason = "is missing or cut, but must be as the saved run left it; --overwrite starts the run \
+                    again";
                 return Err(Error::file(self.folder.join(kind.file_name(lost)), reason));
             }
         }
