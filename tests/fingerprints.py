@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fingerprints of some 7,000 short runs: scenes x steppers x methods x remedies x numbers, a line each.
+"""Fingerprints of some 8,000 short runs: scenes x steppers x methods x remedies x numbers, a line each.
 
 tests/fingerprints.py target/release/slump > table        # all of them
 tests/fingerprints.py target/release/slump 17 > table     # every 17th

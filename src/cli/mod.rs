@@ -58,7 +58,7 @@ enum CliCommand {
         #[command(flatten)]
         headless: Box<HeadlessOptions>,
     },
-    /// Put discs into a box over a rough base, let them come to rest, and write them as CSV
+    /// Make a pile: put discs into a box over a rough base, let them settle, and write them as CSV
     Generate {
         /// Number of grains
         #[arg(long, default_value_t = NewPile::default().grains)]
@@ -66,10 +66,10 @@ enum CliCommand {
         /// Width of the box, in mean diameters
         #[arg(long, default_value_t = NewPile::default().box_width_in_diameters)]
         box_width: f64,
-        /// Seed of diameters and places
+        /// Seed of diameters and positions
         #[arg(long, default_value_t = NewPile::default().seed)]
         seed: u64,
-        /// How the grains are put in place
+        /// Deposition: the way to place the grains
         #[arg(long, value_name = "WAY", default_value_t, value_parser = parser_of::<Deposition>())]
         deposition: Deposition,
         /// The file to write
@@ -79,26 +79,26 @@ enum CliCommand {
         #[arg(long)]
         overwrite: bool,
     },
-    /// List the built-in scenes, steppers, methods and models of friction
+    /// List the built-in scenes, steppers, solvers and friction models
     List {
-        /// These alone
+        /// List only these
         #[arg(value_name = "WHAT")]
         what: Option<Listed>,
     },
-    /// Write the contact problem of one step to a file, or solve such a file alone
+    /// Write the contact problem of one step to a file, or solve such a file
     Problem {
         #[command(subcommand)]
         command: ProblemCommand,
     },
     #[command(flatten)]
     Study(StudyCommand),
-    /// Print a scene, with the changes asked for, as a scene file
+    /// Print a scene, with the requested changes, as a scene file
     Scene {
         // By far the largest of them.
         #[command(flatten)]
         config: Box<Config>,
     },
-    /// Print what completes commands and options in a shell
+    /// Print the completions of commands and options for a shell
     #[cfg(feature = "manual")]
     Completions {
         /// The shell
@@ -310,7 +310,7 @@ enum ProblemCommand {
         #[arg(long)]
         overwrite: bool,
     },
-    /// Solve a problem file, or a text file of Siconos', and say how well and how fast
+    /// Solve a problem file, or a text file of Siconos, and report residual and time
     Solve {
         /// The problem file
         file: PathBuf,
@@ -320,17 +320,17 @@ enum ProblemCommand {
         /// Residual to reach
         #[arg(long, value_name = "X", default_value_t = 1e-8)]
         tolerance: f64,
-        /// Give up after this many sweeps
+        /// Stop after this many sweeps
         #[arg(long, value_name = "N", default_value_t = 1_000_000)]
         max_sweeps: u32,
-        /// Solve it this many times and give the least time
+        /// Repeat the solve this many times and report the least time
         #[arg(long, value_name = "N", default_value_t = 1)]
         repeat: u32,
-        /// Look for solutions of Coulomb's law from this many starts (the file's impulses, none, then random ones), and say how
-        /// far apart they are
+        /// Search for solutions of Coulomb's law from this many starts (the impulses of the file, zero, then random impulses),
+        /// and report their distances
         #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "without_bodies", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_STARTS)))]
         starts: u32,
-        /// Work on W alone, whether or not the file has bodies
+        /// Use only W, even if the file has bodies
         #[arg(long)]
         without_bodies: bool,
         /// Write velocities and impulses to this file (JSON)

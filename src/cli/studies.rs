@@ -31,84 +31,84 @@ pub(super) enum StudyCommand {
         /// The study file (NAME.toml)
         #[arg(value_name = "STUDY", required = true)]
         study: Option<PathBuf>,
-        /// Folder for the results; the same command goes on where it stopped
+        /// Folder for the results; the same command continues where it stopped
         #[arg(long, value_name = "DIR", required = true)]
         out: Option<PathBuf>,
-        /// Run part K of N alone; `slump sweep merge` joins the parts
+        /// Run only part K of N; `slump sweep merge` joins the parts
         #[arg(long, value_name = "K/N")]
         shard: Option<String>,
         /// Run the study's quick pass, which is coarser
         #[arg(long)]
         quick: bool,
-        /// Throw away what the folder holds of another study, or what cannot be read
+        /// Remove results of another study, or unreadable results, from the folder
         #[arg(long)]
         redo: bool,
-        /// Print a command a run, for GNU parallel or a cluster's queue, and run nothing; `slump sweep merge` joins the runs
+        /// Print one command per run, for GNU parallel or the queue of a cluster, and run nothing; `slump sweep merge` joins the runs
         #[arg(long, conflicts_with_all = ["shard", "redo"])]
         list: bool,
         #[command(subcommand)]
         command: Option<SweepAction>,
     },
-    /// Tell how much of a number the grains make, how much the contact law, the time step and the solver
+    /// Estimate how much of a result is due to the initial state, the contact law, the time step and the solver
     Budget {
         // By far the largest of them.
         #[command(flatten)]
         config: Box<Config>,
-        /// A column of what a run measures (slump, max_overlap, coordination, …) at the end, or mean(x), min(x), max(x), total(x); several times for several [default: slump]
+        /// Result to explain: a column (slump, max_overlap, coordination, …) at the end of the run, or mean(x), min(x), max(x), total(x) of it; can be given several times [default: slump]
         #[arg(long = "quantity", value_name = "X", help_heading = "Budget")]
         quantities: Vec<String>,
-        /// Where the window of mean, min, max and total begins, simulated seconds [default: 0]
+        /// Begin of the interval of mean, min, max and total, simulated seconds [default: 0]
         #[arg(long = "from", value_name = "SECONDS", help_heading = "Budget")]
         from_secs: Option<f64>,
-        /// Where it ends, and runs with it [default: the scene's duration]
+        /// End of that interval and of the runs, simulated seconds [default: the duration of the scene]
         #[arg(long = "to", value_name = "SECONDS", help_heading = "Budget")]
         to_secs: Option<f64>,
-        /// Half the width that every interval is to have, in the quantity's unit [default: a tenth of its value]
+        /// Largest half-width of the intervals, in the unit of the result [default: a tenth of its value]
         #[arg(long, value_name = "X", help_heading = "Budget")]
         within: Option<f64>,
-        /// Time to take on all cores: 90s, 30min, 2h
+        /// Time limit on all cores: 90s, 30min, 2h
         #[arg(long = "cost", value_name = "TIME", help_heading = "Budget", default_value = "5min", value_parser = secs_of)]
         cost_secs: f64,
-        /// Take part K of N of the starts alone, on another machine; the same command without it joins what lies in the folder
+        /// Compute only part K of N of the initial states, for example on another machine; the same command without this option joins the parts in the folder
         #[arg(long, value_name = "K/N", help_heading = "Budget")]
         shard: Option<String>,
-        /// Folder for the answer, its picture and tables; the same command goes on where it stopped
+        /// Folder for report, picture and tables; the same command continues where it stopped
         #[arg(long, value_name = "DIR", help_heading = "Budget")]
         out: PathBuf,
     },
-    /// Make the paper's figures, and the maps that its conclusion asks for, from simulation alone
+    /// Compute the figures of the paper, and the maps that its conclusion asks for
     Reproduce {
-        /// Figures, or all
+        /// Figures, or all of them
         #[arg(required = true, value_name = "FIGURE", value_parser = PossibleValuesParser::new(figure_names()))]
         figures: Vec<String>,
-        /// Folder for figures, tables and report; the same command goes on where it stopped
+        /// Folder for figures, tables and report; the same command continues where it stopped
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
-        /// Coarser, in a few minutes
+        /// A coarser version that takes a few minutes
         #[arg(long)]
         quick: bool,
     },
-    /// Chart speed against accuracy of every method: of steps and of simulations
+    /// Chart the error of every method against its time, for single steps and whole simulations
     Chart(ChartOptions),
-    /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
+    /// Run every method on hard scenes, and report whether it holds, degrades or fails at each level
     Stability {
-        /// Challenges; all where none is given
+        /// Challenges [default: all]
         #[arg(value_name = "SCENE")]
         scenes: Vec<String>,
-        /// Folder for the table and its picture, and, unless challenges are given, the stability maps
+        /// Folder for the table and its picture, and for the stability maps if no challenge is named
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// File for the table alone, as CSV
+        /// File for the table, as CSV
         #[arg(long, value_name = "FILE")]
         table: Option<PathBuf>,
         /// Replace that file if it exists; without this option an existing file is refused
         #[arg(long, requires = "table")]
         overwrite: bool,
-        /// Leave the longest runs out: under a minute, and what the tests compare with
+        /// Leave out the longest runs; takes under a minute (the tests compare with this table)
         #[arg(long)]
         quick: bool,
     },
-    /// Hold Slump against published experiments: quantity, interval, verdict and cost, for a choice of methods
+    /// Compare Slump with published experiments: quantity, interval, verdict and cost
     Validate(ValidateOptions),
 }
 
@@ -118,13 +118,13 @@ pub(super) enum SweepAction {
     Merge {
         /// The study file (NAME.toml)
         study: PathBuf,
-        /// Folders that hold parts
+        /// Folders with parts of the study
         #[arg(required = true, value_name = "DIR")]
         parts: Vec<PathBuf>,
-        /// Folder for runs.csv; the first part's where nothing is said
+        /// Folder for runs.csv [default: that of the first part]
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// The parts are of the study's quick pass
+        /// The parts belong to the quick pass of the study
         #[arg(long)]
         quick: bool,
     },

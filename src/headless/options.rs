@@ -34,7 +34,7 @@ impl std::str::FromStr for PictureSize {
     }
 }
 
-/// What can be laid over the grains.
+/// Overlays on the grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Overlay {
     /// Contact forces as links
@@ -53,7 +53,7 @@ pub(crate) struct HeadlessOptions {
     /// Folder for pictures, observables.csv and manifest.json
     #[arg(long, value_name = "DIR")]
     pub frames: Option<PathBuf>,
-    /// Remove what earlier runs left in the folders, and replace files; without it such folders and files are refused
+    /// Replace files and remove the files of earlier runs; without this option folders with earlier runs are refused
     #[arg(long)]
     pub overwrite: bool,
     /// Size of a picture, pixels [default: 960x540]
@@ -65,24 +65,24 @@ pub(crate) struct HeadlessOptions {
     /// Pictures at these simulated times, seconds; the last ends the run unless --duration is given
     #[arg(long, value_name = "T1,T2", value_delimiter = ',', allow_hyphen_values = true)]
     pub times: Vec<f64>,
-    /// Write the pictures as an animation too, 25 a second
+    /// Also write the pictures as an animation (GIF), 25 per second
     #[arg(long, value_name = "FILE")]
     pub gif: Option<PathBuf>,
-    /// Write the pictures as a video too, at the pace of simulated time: MP4, by ffmpeg
+    /// Also write the pictures as a video (MP4, by ffmpeg), at the pace of simulated time
     #[arg(long, value_name = "FILE", conflicts_with = "times")]
     pub video: Option<PathBuf>,
-    /// Simulated seconds in a second of the video: 0.1 is ten times slower than it was, and asks for 250 pictures
-    /// per simulated second unless --fps says otherwise [default: 1]
+    /// Simulated seconds per second of video; 0.1 is slow motion by ten, with 250 pictures per simulated second unless
+    /// --fps is given [default: 1]
     #[arg(long, value_name = "N")]
     pub video_speed: Option<f64>,
-    /// What to lay over the grains
+    /// Overlay on the grains
     #[arg(long, value_name = "WHAT", value_delimiter = ',')]
     pub show: Vec<Overlay>,
-    /// What the colours of the grains stand for
+    /// Quantity shown by the colours of the grains
     #[arg(long, value_name = "BY", alias = "color")]
     pub colour: Option<ColourBy>,
-    /// Values at the two ends of the colours: m/s, diameters or N. Frames are then drawn as the run goes;
-    /// without it they wait for its end, to share the scale that shows all of them
+    /// Values at the two ends of the colour scale: m/s, diameters or N. Pictures are then drawn during the run; without
+    /// this option they are drawn at its end, with a scale that fits all of them
     #[arg(
         long,
         value_name = "LOW,HIGH",
@@ -91,31 +91,31 @@ pub(crate) struct HeadlessOptions {
         alias = "color-scale"
     )]
     pub colour_scale: Vec<f64>,
-    /// Force of the widest link, N: the same for --show forces
+    /// Force of the widest link of --show forces, N; without it the scale fits all pictures
     #[arg(long, value_name = "N")]
     pub force_scale: Option<f64>,
-    /// Ground and ink
+    /// Colours of background and ink
     #[arg(long, value_name = "THEME")]
     pub theme: Option<Theme>,
-    /// What draws: auto tries Vulkan, OpenGL and then the processor
+    /// Renderer: auto tries Vulkan, then OpenGL, then the processor
     #[arg(long, value_name = "KIND", default_value = "auto")]
     pub renderer: RendererChoice,
-    /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
+    /// Continue a saved run; simulated time, slump and picture numbers continue, and other settings on the command line apply from there on (to start a new run from its grains, use --initial)
     #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
     pub restart: Option<PathBuf>,
-    /// Save the run at its end, a signal's too, unless its state is no longer finite
+    /// Save the run to this file at its end, also if a signal ends it, unless its state is no longer finite
     #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
     pub save: Option<PathBuf>,
-    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
+    /// Save the run every this many simulated seconds as checkpoint.slump in the folder of the frames; the same command continues a stopped run from there (--overwrite starts again)
     #[arg(long, value_name = "SECONDS", help_heading = "Saved runs", requires = "frames")]
     pub checkpoint_every: Option<f64>,
     /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
     #[arg(long, value_name = "DIR", help_heading = "Data")]
     pub data: Option<PathBuf>,
-    /// Simulated time between its moments, seconds [default: the times of the pictures]
+    /// Simulated time between the frames of the recording, seconds [default: the times of the pictures]
     #[arg(long, value_name = "SECONDS", help_heading = "Data")]
     pub data_every: Option<f64>,
-    /// What it is written as [default: parquet]
+    /// Format of the recording [default: parquet]
     #[arg(
         long,
         value_name = "FORMAT",

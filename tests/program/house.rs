@@ -166,6 +166,51 @@ fn documents_name_files_that_are_there() {
     assert!(gone.is_empty(), "{gone:#?}");
 }
 
+/// Phrases of a private vocabulary that a reader must decode. Each has a plain word: again, depends on, reports, also,
+/// continues, if, is not solved.
+const PRIVATE_PHRASES: [&str; 11] = [
+    " anew",
+    "hangs on",
+    "hang on",
+    "told of",
+    "tells of",
+    "besides",
+    "goes on with",
+    "gone on with",
+    "True where",
+    "held against",
+    "leaves unsolved",
+];
+
+#[test]
+fn comments_and_documents_use_plain_words() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut texts =
+        files_below(&["src", "crates", "python", "tests", "benches"].map(|it| root.join(it)));
+    for text in texts.values_mut() {
+        let is_comment = |line: &&str| line.trim_start().starts_with("//");
+        *text = text
+            .lines()
+            .map(|line| if is_comment(&line) { line } else { "" })
+            .fold(String::new(), |text, line| text + line + "\n");
+    }
+    let book = std::fs::read_dir(root.join("docs")).unwrap().map(|page| page.unwrap().path());
+    let others =
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "python/README.md"];
+    for page in book.chain(others.map(|name| root.join(name))) {
+        texts.insert(page.display().to_string(), std::fs::read_to_string(&page).unwrap());
+    }
+    let mut found = Vec::new();
+    for (path, text) in &texts {
+        for (number, line) in text.lines().enumerate() {
+            let phrases = PRIVATE_PHRASES.iter().filter(|phrase| line.contains(**phrase));
+            found.extend(phrases.map(|phrase| format!("{path}:{}: {phrase}", number + 1)));
+        }
+    }
+    found.retain(|it| !it.starts_with("tests/program/house.rs"));
+    assert!(found.is_empty(), "plain words instead of: {found:#?}");
+}
+
 /// Of 0.0 and -0.0, `f64::max` and `f64::min` may return either; [`slump_core::number::Parts`] always returns the same.
 #[test]
 fn no_sign_of_a_zero_depends_on_the_compiler() {

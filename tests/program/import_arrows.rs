@@ -200,10 +200,10 @@ pub fn circles(arrows: &BTreeSet<(String, String)>) -> Vec<String> {
         let child = |file: &'_ str| Some(file.strip_prefix(folder)?.split('/').next()?.to_owned());
         let mut between = BTreeMap::<String, BTreeMap<String, &(String, String)>>::new();
         for arrow in arrows {
-            if let (Some(from), Some(to)) = (child(&arrow.0), child(&arrow.1)) {
-                if from != to {
-                    between.entry(from).or_default().insert(to, arrow);
-                }
+            if let (Some(from), Some(to)) = (child(&arrow.0), child(&arrow.1))
+                && from != to
+            {
+                between.entry(from).or_default().insert(to, arrow);
             }
         }
         let reaches = |from: &str, to: &str| {

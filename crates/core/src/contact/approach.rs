@@ -8,8 +8,8 @@
 use glam::DVec2;
 
 use super::candidates::Candidates;
-use super::contact::Contact;
 use super::numbering::{Numbering, Other};
+use super::pair::Contact;
 use crate::number::Parts;
 use crate::world::World;
 

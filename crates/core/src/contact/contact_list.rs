@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::approach::{InTouch, LookAhead, approach};
 use super::candidates::Candidates;
-use super::contact::{Contact, ContactMemory, Impulse};
 use super::numbering::{Numbering, Other};
+use super::pair::{Contact, ContactMemory, Impulse};
 use super::range::Bond;
 use super::transmitted::{StepSums, Transmitted};
 use crate::number::Parts;

@@ -4,7 +4,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, Impulse};
+use super::pair::{Contact, Impulse};
 
 /// Impulses transmitted by a pair since the step began.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -48,7 +48,7 @@ pub struct SceneSource {
     #[arg(long, value_name = "NAME|FILE", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
-    /// Start the pile from discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), or what --data wrote as CSV or Parquet; or the scene of a saved run from its grains
+    /// Start the pile from these discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), a recording (CSV or Parquet), or a saved run
     #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed", "deposition"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<PathBuf>,
@@ -60,7 +60,7 @@ pub struct SceneSource {
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grains: Option<usize>,
-    /// Width of the box that a new pile is made in, in mean diameters
+    /// Width of the box in which a new pile is made, in mean diameters
     #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub box_width: Option<f64>,
@@ -72,15 +72,15 @@ pub struct SceneSource {
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// How the grains of a new pile are put in place [default: rain]
+    /// Deposition: the way to place the grains of a new pile [default: rain]
     #[arg(long, value_name = "WAY", value_parser = parser_of::<Deposition>(), help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deposition: Option<Deposition>,
-    /// Where the cradle's k starts, in diameters left of i, centre to centre
+    /// Start of the ball k of the cradle, in diameters to the left of i, between centres
     #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
-    /// Settings that go together; what else is given changes them
+    /// Preset: a group of settings; other options override it
     #[arg(long, value_name = "NAME", value_parser = parser_of::<Preset>(), help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<Preset>,

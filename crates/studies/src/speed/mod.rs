@@ -28,7 +28,7 @@ pub enum ChartPart {
     Step,
     /// Error of the slump against simulated seconds per second
     Simulation,
-    /// Error against the time of a step, of 138 to 10,000 grains
+    /// Error against the time of a step, for 138 to 10,000 grains
     Size,
     /// How many solutions steps have, and how far apart they are
     Solutions,
@@ -37,16 +37,16 @@ pub enum ChartPart {
 /// What to chart, and how.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChartOptions {
-    /// Folder for pictures, tables and measurements; the same command goes on where it stopped
+    /// Folder for pictures, tables and measurements; the same command continues where it stopped
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Coarser, in a few minutes
+    /// A coarser version that takes a few minutes
     #[arg(long)]
     pub quick: bool,
-    /// Also race on steps of 138 to 10,000 grains, and look for the solutions that steps have
+    /// Also measure steps of 138 to 10,000 grains, and search for several solutions of a step
     #[arg(long)]
     pub large: bool,
-    /// Chart these alone
+    /// Chart only these parts
     #[arg(long, value_name = "PART", value_delimiter = ',')]
     pub only: Vec<ChartPart>,
 }

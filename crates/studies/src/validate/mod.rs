@@ -58,16 +58,16 @@ static EXPERIMENTS: [Experiment; 10] = [
 /// What to hold against what was published, and how.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ValidateOptions {
-    /// Experiments; all where none is given
+    /// Experiments [default: all]
     #[arg(value_name = "EXPERIMENT", value_parser = PossibleValuesParser::new(experiment_names()))]
     pub experiments: Vec<String>,
-    /// Folder for report, tables and figure; the same command goes on where it stopped
+    /// Folder for report, tables and figure; the same command continues where it stopped
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Smaller systems and fewer of them, in a few minutes
+    /// Fewer and smaller systems, in a few minutes
     #[arg(long)]
     pub quick: bool,
-    /// The way to step, under which all is computed; but for moreau, experiments about methods are left out
+    /// Stepper of all experiments; experiments about methods run only with moreau
     #[arg(long, value_name = "NAME", default_value = "moreau", value_parser = parser_of::<Stepper>())]
     pub stepper: Stepper,
     /// Methods, each with every time step and effort [default: auto, to a velocity error of 1e-4; nsgs if an effort is given]
@@ -76,10 +76,10 @@ pub struct ValidateOptions {
     /// Time steps, seconds [default: 1e-3]
     #[arg(long = "time-steps", value_name = "SECONDS", value_delimiter = ',')]
     pub time_steps_secs: Vec<f64>,
-    /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either; none by auto]
+    /// Efforts: fixed numbers of sweeps per step [default: 20 and 100 if no tolerance is given; none for auto]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     pub sweeps: Vec<u32>,
-    /// Efforts: residuals that a step is solved to, within 1,000 sweeps
+    /// Efforts: residuals to which each step is solved, within 1,000 sweeps
     #[arg(long, value_name = "X", value_delimiter = ',')]
     pub tolerances: Vec<f64>,
 }
