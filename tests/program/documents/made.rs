@@ -308,7 +308,7 @@ fn shells_and_man_can_read_what_the_program_says_of_itself() {
 
     // The page describes each option, whether its help is short or long.
     let page = printed("man run");
-    for about in ["Make a new pile", "Start the pile from discs", "a scene file", "[pile: "] {
+    for about in ["Make a new pile", "Start the pile from these discs", "a scene file", "[pile: "] {
         assert!(page.contains(about), "{about} in {page}");
     }
     let unknown = sentence(&mut slump("man bouquet"));

@@ -62,9 +62,9 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// Texts for a file that shows this run, with a simulated time (s) if the file shows one moment. `besides` are
+    /// Texts for a file that shows this run, with a simulated time (s) if the file shows one moment. `further` are
     /// further options of the command.
-    pub fn texts(&self, time_secs: Option<f64>, besides: &[String]) -> Texts {
+    pub fn texts(&self, time_secs: Option<f64>, further: &[String]) -> Texts {
         let Self { scene, settings, words } = self;
         let mut texts = Texts::default();
         let at = time_secs.map_or_else(String::new, |secs| format!(", t = {secs} s"));
@@ -75,7 +75,7 @@ impl Provenance {
         }
         texts.add("Settings", joined(&words_of(settings, None)));
         let command = ["slump".to_owned(), "--headless".to_owned()];
-        texts.add("Command line", joined(&[&command[..], words, besides].concat()));
+        texts.add("Command line", joined(&[&command[..], words, further].concat()));
         texts
     }
 }
