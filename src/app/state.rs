@@ -128,7 +128,7 @@ impl AppState {
         }
         self.run.follow_frame();
         if let Some(settings) = self.run.wanted_settings().filter(|_| !self.touring) {
-            self.preferences.scene = self.run.config.clone().with_settings(&settings);
+            self.preferences.scene = self.run.config().with_settings(&settings);
         }
         self.panels.scene.follow(&self.run);
         if let Some(notice) = self.exports.follow(context) {
@@ -147,11 +147,9 @@ impl AppState {
         (self.run.pinned, self.run.draft) = (None, None);
         self.exports.data.stretch = None;
         self.panels.pages.forget_race();
-        if let Some(start) = self.run.frame.start.clone() {
-            self.run.config.clone_from(&start.config);
-            if let Some(arrangement) = arrangement_of(&start) {
-                self.arrange(arrangement);
-            }
+        let start = self.run.frame.start.as_ref();
+        if let Some(arrangement) = start.and_then(|start| arrangement_of(start)) {
+            self.arrange(arrangement);
         }
     }
 
@@ -172,7 +170,6 @@ impl AppState {
 
     /// Opens a scene.
     pub fn load(&mut self, config: Config) {
-        self.run.config = config.clone();
         self.open(Opening::Scene(Box::new(config)));
     }
 

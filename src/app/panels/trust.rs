@@ -180,7 +180,7 @@ impl TrustPanel {
         let is_from_start =
             context.run.world().is_some_and(|world| world.recorded_from_secs == 0.0);
         let settings = context.run.wanted_settings();
-        let config = settings.map(|settings| context.run.config.clone().with_settings(&settings));
+        let config = settings.map(|settings| context.run.config().with_settings(&settings));
         self.budget = match (line, config) {
             (Some(of), Some(config)) if is_from_start => Some(begin(ui, context, of, config)),
             _ => None,
