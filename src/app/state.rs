@@ -21,7 +21,7 @@ use super::session::{Arrangement, arrangement_of, write_session, write_state};
 use super::watched_run::WatchedRun;
 use super::work::closed;
 use crate::config::{Config, SavedState};
-use crate::live::{Command, Live, LiveStart};
+use crate::live::{Command, Live, LiveFrame, LiveStart};
 
 /// The state of the user interface.
 pub struct AppState {
@@ -118,6 +118,11 @@ impl AppState {
     pub(super) fn refresh(&mut self, context: &Context) {
         self.run.frame = self.run.live.latest().clone();
         self.follow_loads();
+        let LiveFrame { acknowledged, start, .. } = &self.run.frame;
+        if start.is_none() && *acknowledged == self.run.live.sent() {
+            // The first load was cancelled or failed. The default scene needs no deposition.
+            self.load(Config::default());
+        }
         // The same words again are another refusal.
         let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
         if address(&self.run.frame.refusal) != address(&self.seen_refusal) {
