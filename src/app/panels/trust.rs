@@ -1,5 +1,6 @@
 //! "Can I trust this?": one word on the run that is shown, and the list behind it: how its steps were solved, what went
-//! wrong, what other starts come to, and an error budget that idle cores compute while the list is open.
+//! wrong, the slump of other initial states, and an error budget. Idle cores compute the budget once the list has been
+//! opened. They continue when the list is closed, until the settings change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -96,14 +97,10 @@ impl TrustPanel {
 
     /// The list, where it is open.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
+        self.follow(ui, context);
         if !self.is_open {
-            // Nobody looks: idle cores are to be idle.
-            if self.budget.as_ref().is_some_and(|budget| budget.work.is_some()) {
-                self.budget = None;
-            }
             return;
         }
-        self.follow(ui, context);
         let mut is_open = true;
         egui::Window::new("Can I trust this?")
             .anchor(Align2::LEFT_BOTTOM, [12.0, -40.0])
@@ -170,7 +167,7 @@ impl TrustPanel {
         {
             budget.failure = outcome.err().map(|error| error.to_string());
         }
-        if IN_BROWSER {
+        if IN_BROWSER || !(self.is_open || self.budget.is_some()) {
             return;
         }
         let line = context.run.command_line();
@@ -182,7 +179,9 @@ impl TrustPanel {
         let settings = context.run.wanted_settings();
         let config = settings.map(|settings| context.run.config().with_settings(&settings));
         self.budget = match (line, config) {
-            (Some(of), Some(config)) if is_from_start => Some(begin(ui, context, of, config)),
+            (Some(of), Some(config)) if is_from_start && self.is_open => {
+                Some(begin(ui, context, of, config))
+            }
             _ => None,
         };
     }
