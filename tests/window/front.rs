@@ -256,6 +256,16 @@ const BEYOND_REASON: [(&str, &str, &str); 3] = [
 ];
 
 #[test]
+fn a_time_step_that_is_too_long_is_warned_of_instead_of_praised() {
+    let mut robot = Robot::open(pile());
+    assert!(robot.shows("A larger Δt makes these grains stick better"), "the situation");
+    robot.type_number("Δt, time step", "1");
+    robot.frames(2);
+    assert!(robot.shows("Δt is too long: in one step a grain at rest falls by 19"));
+    assert!(!robot.shows("stick better") && robot.shows("Can I trust this? no"));
+}
+
+#[test]
 fn numbers_beyond_all_reason_are_refused() {
     let mut robot = Robot::open(pile());
     let before = robot.settings();

@@ -11,7 +11,7 @@ use super::alarms::alarms;
 use super::grain::compact;
 use crate::Instant;
 use crate::app::IN_BROWSER;
-use crate::app::budget::{FAST, SOLVED};
+use crate::app::budget::{FAST, SOLVED, too_long};
 use crate::app::context::PanelContext;
 use crate::app::ensemble::on_idle_cores;
 use crate::app::theme;
@@ -66,7 +66,11 @@ impl TrustPanel {
         let is_bad = world.alarms.iter().any(|alarm| BAD.contains(&alarm.kind));
         let steps = world.snapshot.observables.step.max(1);
         let unsolved = world.unconverged_steps as f64;
-        if world.failure.is_some() || is_bad || unsolved > FEW * steps as f64 {
+        if world.failure.is_some()
+            || is_bad
+            || warning(world).is_some()
+            || unsolved > FEW * steps as f64
+        {
             return Trust::No;
         }
         self.of_budget(run).map_or(Trust::NotKnownYet, |(trust, _)| trust)
@@ -120,7 +124,9 @@ impl TrustPanel {
                     true => ui.visuals().text_color(),
                     false => theme::warning(ui.visuals().dark_mode),
                 };
-                for alarm in alarms(context.run) {
+                for alarm in
+                    context.run.world().and_then(warning).into_iter().chain(alarms(context.run))
+                {
                     ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
                 }
                 if let (Some(said), Some(world)) = (
@@ -185,6 +191,11 @@ impl TrustPanel {
             _ => None,
         };
     }
+}
+
+/// A warning of the time step of a world.
+fn warning(world: &WorldFrame) -> Option<String> {
+    too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
 
 /// How the steps of a world were solved, a line a statement.
