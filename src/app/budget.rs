@@ -56,6 +56,27 @@ pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 /// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`docs/paper.md`, Fig. 5a); beyond it need not.
 const WEAK: f64 = 50.0;
 
+/// Overlap, in mean diameters, up to which a contact is only found late. A grain that falls down the paper's pile (10 d) moves
+/// as far in a step of 1 ms. A smaller value warns of most runs with the default settings.
+pub(super) const USUAL_OVERLAP: f64 = 0.2;
+
+/// A warning of a step in which a grain at rest falls by more than [`USUAL_OVERLAP`].
+pub(super) fn too_long(
+    settings: &Settings,
+    surroundings: &Surroundings,
+    substeps: u32,
+) -> Option<String> {
+    let step_secs = settings.parameters.time_step_secs / f64::from(substeps.max(1));
+    let fall = surroundings.gravity_magnitude * step_secs.powi(2) / surroundings.mean_diameter;
+    let digits = usize::from(fall < 10.0);
+    (fall > USUAL_OVERLAP).then(|| {
+        format!(
+            "Δt is too long: in one step a grain at rest falls by {fall:.digits$} diameters, and contacts are found too \
+             late. Choose a smaller Δt."
+        )
+    })
+}
+
 /// What to try, and what to watch.
 pub(super) fn what_to_try(settings: &Settings) -> &'static str {
     let parameters = &settings.parameters;
@@ -112,6 +133,20 @@ mod tests {
                 assert_eq!(solver.max_sweeps, effort.settings.max_sweeps, "{name}");
             }
         }
+    }
+
+    #[test]
+    fn no_scene_begins_with_a_time_step_that_is_too_long() {
+        for info in crate::scene::SCENES {
+            let run = built_in(info.name).expect("a scene").simulation().expect("a sound scene");
+            let surroundings = run.snapshot().surroundings;
+            let warning = too_long(run.settings(), &surroundings, run.substeps());
+            assert_eq!(warning, None, "{}", info.name);
+        }
+        let longest = |secs| too_long(&Settings::default().over(secs), &surroundings("pile"), 1);
+        assert_eq!(longest(1e-2), None, "the slider's end");
+        let warning = longest(1.0).expect("a warning");
+        assert!(warning.contains("falls by 19"), "{warning}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::film::{Animation, Video};
 use crate::headless::WaitingStates;
 use crate::output::{check_writable, counted};
 use crate::render::{Renderer, RendererChoice, speed_reference};
-use crate::sim::{RunEnding, Simulation};
+use crate::sim::{RunEnding, Settings, Simulation};
 
 /// What the record is made into.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -38,6 +38,9 @@ impl FilmFormat {
 const PART_OF_MOMENTS: f64 = 0.3;
 /// More pictures than this are a mistake rather than a wish.
 const MOST_PICTURES: f64 = 1e5;
+
+/// For each world, the state that each picture shows, and its settings.
+type Moments = Vec<Vec<(usize, Settings)>>;
 
 /// What a video or an animation is to show.
 pub(crate) struct FilmOrder {
@@ -94,7 +97,9 @@ impl FilmOrder {
             }
             for (world, shown) in picture.worlds.iter_mut().zip(&shown) {
                 // Of one that ended before, its last moment.
-                let index = shown.get(number).or(shown.last()).copied().unwrap_or(0);
+                let moment = shown.get(number).or(shown.last()).copied();
+                let (index, settings) = moment.unwrap_or((0, world.settings));
+                world.settings = settings;
                 let snapshot = states.get(index)?.1;
                 let slump = snapshot.observables.slump;
                 world.note = if self.slumps { format!("Δy {slump:.3}") } else { String::new() };
@@ -127,15 +132,14 @@ impl FilmOrder {
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
     }
 
-    /// Computes what is to be shown: for each world, which of the states each picture shows, and the fastest grain's
-    /// speed. Nothing where it is given up.
+    /// Computes what is to be shown, and the fastest grain's speed. Nothing where it is given up.
     fn moments(
         &self,
         runs: &[TakenRun],
         times: &[f64],
         states: &mut WaitingStates,
         reporter: &Reporter,
-    ) -> Result<Option<(Vec<Vec<usize>>, f64)>> {
+    ) -> Result<Option<(Moments, f64)>> {
         let style = &self.picture.style;
         let [from, until] = [times[0], times[times.len() - 1]];
         let span = (until - from).max(f64::MIN_POSITIVE);
@@ -155,7 +159,7 @@ impl FilmOrder {
                     states.add(style, index, snapshot)?;
                     // Pictures may follow each other faster than steps.
                     while due.next_if(|&&time| is_nearest(simulation, time)).is_some() {
-                        shown[world].push(index);
+                        shown[world].push((index, *simulation.settings()));
                     }
                 }
                 Ok(ControlFlow::Continue(()))

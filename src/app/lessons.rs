@@ -152,7 +152,7 @@ pub const LESSONS: [Lesson; 7] = [
         ..PILE
     },
     Lesson {
-        title: "What friction hangs on",
+        title: "What friction depends on",
         watch: "Bond 100. On the left friction is bounded by μ(N + C₀), cohesion included; on the right by μ max(N, 0): \
                 there the strong pile slumps. The paper can be read both ways.",
         worlds: |base| {

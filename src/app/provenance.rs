@@ -13,7 +13,7 @@ impl WatchedRun {
     /// window and to the last digit; none where its scene is no longer there. Changes on the way and hands that
     /// pulled are not in it.
     pub fn command_line(&self) -> Option<String> {
-        let run = self.provenance(self.selected, self.config.clone())?;
+        let run = self.provenance(self.selected, self.config())?;
         let command = ["slump".to_owned(), "--headless".to_owned()];
         Some(joined(&[&command[..], &run.words].concat()))
     }
@@ -41,7 +41,7 @@ impl WatchedRun {
 
     fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
         // How long it was to run says nothing of what it has come to.
-        let mut config = self.config.clone();
+        let mut config = self.config();
         config.source.duration = None;
         let run = self.provenance(world, config);
         let (Some(run), Some(shown)) = (run, self.frame.worlds.get(world)) else {

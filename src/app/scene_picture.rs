@@ -4,16 +4,18 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
+use super::titles::caption;
 use crate::error::Result;
+use crate::live::Controls;
 use crate::output::Texts;
-use crate::render::{Camera, Renderer, Style, WorldPanel, draw_scene, draw_worlds};
-use crate::sim::Snapshot;
+use crate::render::{Camera, Renderer, Style, WorldPanel, draw_worlds};
+use crate::sim::{Settings, Snapshot};
 
 /// A world of a picture.
 pub(crate) struct PicturedWorld {
     pub snapshot: Arc<Snapshot>,
-    /// What tells it from the others.
-    pub title: String,
+    /// The settings at that moment.
+    pub settings: Settings,
     /// What stands below it.
     pub note: String,
 }
@@ -34,10 +36,14 @@ impl ScenePicture {
     /// Draws it.
     pub(super) fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
         let Self { worlds, columns, style, camera, size, .. } = self;
-        if let [PicturedWorld { snapshot, .. }] = &worlds[..] {
-            return draw_scene(renderer, snapshot, style, camera, size[0], size[1]);
-        }
-        let panels = worlds.iter().map(|PicturedWorld { snapshot, title, note }| WorldPanel {
+        let controls = worlds.iter().map(|world| Controls { settings: world.settings, pull: None });
+        let controls: Vec<_> = controls.collect();
+        let time_secs = |world: &PicturedWorld| world.snapshot.observables.time_secs;
+        let captions = worlds.iter().enumerate();
+        let captions = captions.map(|(index, world)| caption(&controls, index, time_secs(world)));
+        let captions: Vec<_> = captions.collect();
+        let panels = worlds.iter().zip(&captions);
+        let panels = panels.map(|(PicturedWorld { snapshot, note, .. }, title)| WorldPanel {
             snapshot,
             title,
             note,

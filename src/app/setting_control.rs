@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
-/// Shows a setting and changes it; `start` says what a double click sets. Nothing is shown of a setting that
+/// Shows a setting and changes it; `start` says what a double click on the field sets. Nothing is shown of a setting that
 /// has no control. Where the control's slider or box lies.
 pub(super) fn show(
     ui: &mut Ui,
@@ -109,7 +109,7 @@ const SLIDER_DIGITS: usize = 3;
 const FIELD_WIDTH: f32 = 76.0;
 
 /// Shows a number as a labelled field above a slider. The new value, where there is one, and where the slider lies.
-/// `default` is what a double click sets, and `refuse` says why a typed value cannot be accepted.
+/// `default` is what a double click on the field sets, and `refuse` says why a typed value cannot be accepted.
 fn number(
     ui: &mut Ui,
     control: &Control,
@@ -155,9 +155,7 @@ fn number(
     let name = format!("{} slider", control.label);
     response.widget_info(|| WidgetInfo::slider(true, value, &name));
     let response = response.on_hover_text(control.hint);
-    if response.double_clicked() {
-        edited = Some(default);
-    } else if response.changed() {
+    if response.changed() {
         edited = Some(rounded(place));
     }
     if edited.is_some() {

@@ -21,7 +21,7 @@ use super::session::{Arrangement, arrangement_of, write_session, write_state};
 use super::watched_run::WatchedRun;
 use super::work::closed;
 use crate::config::{Config, SavedState};
-use crate::live::{Command, Live, LiveStart};
+use crate::live::{Command, Live, LiveFrame, LiveStart};
 
 /// The state of the user interface.
 pub struct AppState {
@@ -118,6 +118,11 @@ impl AppState {
     pub(super) fn refresh(&mut self, context: &Context) {
         self.run.frame = self.run.live.latest().clone();
         self.follow_loads();
+        let LiveFrame { acknowledged, start, .. } = &self.run.frame;
+        if start.is_none() && *acknowledged == self.run.live.sent() {
+            // The first load was cancelled or failed. The default scene needs no deposition.
+            self.load(Config::default());
+        }
         // The same words again are another refusal.
         let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
         if address(&self.run.frame.refusal) != address(&self.seen_refusal) {
@@ -128,7 +133,7 @@ impl AppState {
         }
         self.run.follow_frame();
         if let Some(settings) = self.run.wanted_settings().filter(|_| !self.touring) {
-            self.preferences.scene = self.run.config.clone().with_settings(&settings);
+            self.preferences.scene = self.run.config().with_settings(&settings);
         }
         self.panels.scene.follow(&self.run);
         if let Some(notice) = self.exports.follow(context) {
@@ -147,11 +152,9 @@ impl AppState {
         (self.run.pinned, self.run.draft) = (None, None);
         self.exports.data.stretch = None;
         self.panels.pages.forget_race();
-        if let Some(start) = self.run.frame.start.clone() {
-            self.run.config.clone_from(&start.config);
-            if let Some(arrangement) = arrangement_of(&start) {
-                self.arrange(arrangement);
-            }
+        let start = self.run.frame.start.as_ref();
+        if let Some(arrangement) = start.and_then(|start| arrangement_of(start)) {
+            self.arrange(arrangement);
         }
     }
 
@@ -172,7 +175,6 @@ impl AppState {
 
     /// Opens a scene.
     pub fn load(&mut self, config: Config) {
-        self.run.config = config.clone();
         self.open(Opening::Scene(Box::new(config)));
     }
 

@@ -40,6 +40,19 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     all.join(", ")
 }
 
+/// The caption of a world in a picture: its number among several, its title, Bond and Δt in any case, and the time.
+pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> String {
+    let Some(world) = worlds.get(index) else { return String::new() };
+    let mut text = title_among(worlds, index);
+    for said in ["bond", "dt"].into_iter().filter_map(|name| said(&world.settings, name)) {
+        if !text.contains(&said) {
+            text += &format!(", {said}");
+        }
+    }
+    let number = if worlds.len() > 1 { format!("{}: ", index + 1) } else { String::new() };
+    format!("{number}{text}, t = {time_secs:.4} s")
+}
+
 /// A setting in a title.
 fn said(settings: &Settings, name: &str) -> Option<String> {
     let about = Settings::about().find(|about| about.name == name)?;
@@ -55,4 +68,25 @@ fn said(settings: &Settings, name: &str) -> Option<String> {
         (_, Value::Switch(on)) => format!("{} {name}", if on { "with" } else { "without" }),
         (_, Value::Word(word)) => format!("{name} {word}"),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn captions_say_bond_time_step_and_time() {
+        let base = Settings::default().with_bond(20.0).over(1e-3);
+        let of = |all: &[Settings]| {
+            let controls = all.iter().map(|&settings| Controls { settings, pull: None });
+            let controls: Vec<_> = controls.collect();
+            let all = (0..controls.len()).map(|index| caption(&controls, index, 0.25));
+            all.collect::<Vec<_>>()
+        };
+        assert_eq!(of(&[base]), ["Bond 20, Δt 1e-3 s, t = 0.2500 s"]);
+        assert_eq!(
+            of(&[base, base.over(5e-3)]),
+            ["1: Δt 1e-3 s, Bond 20, t = 0.2500 s", "2: Δt 5e-3 s, Bond 20, t = 0.2500 s"]
+        );
+    }
 }

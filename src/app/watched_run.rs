@@ -36,8 +36,6 @@ pub struct WatchedRun {
     pub(crate) selected: usize,
     /// The grain whose contacts are listed.
     pub pinned: Option<GrainRef>,
-    /// The configuration that was loaded last.
-    pub(crate) config: Config,
 }
 
 /// A run that is to be written down.
@@ -56,7 +54,6 @@ impl WatchedRun {
             draft: None,
             selected: 0,
             pinned: None,
-            config: Config::default(),
         }
     }
 
@@ -94,6 +91,11 @@ impl WatchedRun {
     /// The settings that the controls want of the selected world, and the start, which has their defaults.
     pub(crate) fn wanted_and_start(&self) -> Option<(Settings, Arc<LiveStart>)> {
         Some((self.wanted_settings()?, self.frame.start.clone()?))
+    }
+
+    /// The configuration that made the run that is shown. A load that is cancelled or fails does not change it.
+    pub(crate) fn config(&self) -> Config {
+        self.frame.start.as_ref().map_or_else(Config::default, |start| start.config.clone())
     }
 
     /// True if the open scene is a heap, whose slump means something.

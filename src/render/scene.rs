@@ -72,8 +72,8 @@ pub fn panel_size(style: &Style, size: [u32; 2], count: usize, columns: usize) -
     [across.max(1), (height / rows).max(1)]
 }
 
-/// Draws scenes in rows of `columns`, `width` × `height` pixels in all. The camera is that of a single scene of
-/// [`panel_size`].
+/// Draws scenes with their words in rows of `columns`, `width` × `height` pixels in all. The camera is that of a single
+/// scene of [`panel_size`].
 ///
 /// # Errors
 /// If there is no scene, and the errors of [`draw_scene`].
@@ -96,16 +96,24 @@ pub fn draw_worlds(
     let mut whole = RgbaImage::from_pixel(width, height, palette.ground.to_rgba8());
     let words = TextStyle::new(text_px, palette.ink);
     let margin = (0.5 * text_px) as i64;
+    let write = |image: &mut RgbaImage, panel: &WorldPanel<'_>| {
+        let room = across as f32 - 2.0 * margin as f32;
+        let title = TextBlock::wrapped(panel.title, &words, room);
+        title.draw(image, margin, margin, Align::Start, Align::Start);
+        let note = TextBlock::wrapped(panel.note, &words, room);
+        let corner = [i64::from(across) - margin, i64::from(down) - margin];
+        note.draw(image, corner[0], corner[1], Align::End, Align::End);
+    };
+    if panels.len() == 1 {
+        let mut image = draw_scene(renderer, first.snapshot, style, camera, width, height)?;
+        write(&mut image, first);
+        return Ok(image);
+    }
     for (index, panel) in panels.iter().enumerate() {
         // All scenes have the same scale, so one bar is enough.
         let alone = Style { scale_bar: style.scale_bar && index == 0, ..bare.clone() };
         let mut image = draw_scene(renderer, panel.snapshot, &alone, camera, across, down)?;
-        let room = across as f32 - 2.0 * margin as f32;
-        let title = TextBlock::wrapped(panel.title, &words, room);
-        title.draw(&mut image, margin, margin, Align::Start, Align::Start);
-        let note = TextBlock::wrapped(panel.note, &words, room);
-        let corner = [i64::from(across) - margin, i64::from(down) - margin];
-        note.draw(&mut image, corner[0], corner[1], Align::End, Align::End);
+        write(&mut image, panel);
         let (right, bottom) = (i64::from(across), i64::from(down));
         let line = palette.ground.mix(palette.ink, FRAME);
         fill(&mut image, right - 1, right, 0, bottom, line);

@@ -177,3 +177,18 @@ fn what_straddles_a_periodic_border_is_drawn_on_both_sides() {
         assert!(columns.iter().filter(|at| (**at - column).abs() < 0.01).count() > 5, "{x}");
     }
 }
+
+#[test]
+fn a_picture_of_one_world_carries_its_title() {
+    let mut renderer = Renderer::new(RendererChoice::Cpu).unwrap();
+    let (snapshot, style) = (row_of_grains(DVec2::ZERO), Style::default());
+    let [min, max] = bounds(&snapshot).unwrap();
+    let camera = style.camera(min, max, 300, 200);
+    let world = WorldPanel { snapshot: &snapshot, title: "Bond 20", note: "" };
+    let titled = draw_worlds(&mut renderer, &[world], &style, &camera, 1, [300, 200]).unwrap();
+    let plain = drawn(&snapshot, &style);
+    let changed =
+        titled.enumerate_pixels().filter(|(x, y, pixel)| *pixel != plain.get_pixel(*x, *y));
+    let places: Vec<_> = changed.map(|(x, y, _)| (x, y)).collect();
+    assert!(places.len() > 20 && places.iter().all(|&(x, y)| x < 150 && y < 50), "{places:?}");
+}

@@ -20,6 +20,21 @@ fn an_alarm_stands_in_the_status_bar_until_the_run_is_reset() {
 }
 
 #[test]
+fn an_overlap_that_nearly_every_run_shows_is_no_alarm_and_a_larger_one_is() {
+    for (time_step_secs, is_told) in [(1e-3, false), (5e-3, true)] {
+        let mut config = scene("pile");
+        config.parameters.bond = Some(0.0);
+        config.parameters.time_step_secs = Some(time_step_secs);
+        let mut robot = Robot::open(config);
+        robot.take_steps((0.1 / time_step_secs) as u64);
+        let overlaps = |alarm: &slump::live::WorldAlarm| alarm.kind == AlarmKind::Overlap;
+        assert!(robot.world().alarms.iter().any(overlaps), "the situation");
+        robot.harness.step();
+        assert_eq!(robot.shows("a contact overlaps"), is_told, "{time_step_secs} s");
+    }
+}
+
+#[test]
 fn whoever_points_at_an_alarm_reads_it_whole_and_once() {
     let mut robot = Robot::open(scene("thin-wall"));
     robot.take_steps(40);

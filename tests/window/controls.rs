@@ -45,6 +45,24 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
 }
 
 #[test]
+fn a_double_click_on_a_number_resets_it_and_help_says_so() {
+    let mut robot = Robot::open(pile());
+    robot.set(|settings| settings.parameters.bond = 75.0);
+    let field = robot.harness.get_by_role_and_label(egui::Role::TextInput, "Bond").rect();
+    robot.harness.event(egui::Event::PointerMoved(field.center()));
+    for pressed in [true, false, true, false] {
+        let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+        let pos = field.center();
+        robot.harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+    }
+    robot.frames(2);
+    robot.settle();
+    assert_eq!(robot.settings().parameters.bond, 20.0);
+    robot.click("Help");
+    assert!(robot.shows("double-click the field") && !robot.shows("Double-click a slider"));
+}
+
+#[test]
 fn the_run_changes_while_it_runs() {
     let mut robot = Robot::open(pile());
     robot.click("▶  Release");
@@ -129,10 +147,17 @@ fn what_makes_no_sense_is_refused_visibly() {
     assert!(!robot.shows("is no number"));
 }
 
+/// The command line of the run that is shown, and the scene that the next start would open.
+fn identity(robot: &Robot) -> (Option<String>, Config) {
+    (robot.state().run.command_line(), robot.state().preferences.scene.clone())
+}
+
 #[test]
 fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
     let mut robot = Robot::open(pile());
+    let before = identity(&robot);
     robot.load(Config::of_scene("no-such.toml"));
+    assert_eq!(identity(&robot), before);
     let (notice, _) = robot.state().notice().expect("a complaint");
     assert!(notice.text.starts_with("no-such.toml: "), "{}", notice.text);
     assert_eq!(robot.world().snapshot.grains.len(), 138);
@@ -155,13 +180,16 @@ fn a_dropped_list_of_discs_is_opened_and_anything_else_is_not() {
 #[test]
 fn a_new_pile_can_be_given_up() {
     let mut robot = Robot::open(pile());
+    let before = identity(&robot);
     let mut config = pile();
     (config.source.grains, config.source.seed) = (Some(300), Some(1));
     robot.state_mut().load(config);
     robot.until("progress", |state| {
         state.run.frame.loading.as_ref().is_some_and(|progress| !progress.text.is_empty())
     });
+    assert_eq!(identity(&robot), before, "while the new pile is made");
     robot.click("Cancel");
+    assert_eq!(identity(&robot), before, "once it is given up");
     assert_eq!(robot.world().snapshot.grains.len(), 138, "the old pile is still there");
     assert!(robot.state().notice().is_none(), "giving up is no failure");
 }

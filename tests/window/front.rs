@@ -222,11 +222,48 @@ fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
     assert_ne!(told(&robot), before, "the answer was of other settings");
 }
 
+#[test]
+fn a_budget_is_computed_to_its_end_though_its_list_is_closed() {
+    let cache = folder();
+    let mut config = Config::of_scene("cradle");
+    config.source.duration = Some(0.05);
+    let mut robot = Robot::open(config);
+    robot.state_mut().ensemble.keep_in(cache.path().to_owned());
+    let at = robot.place("trust", 0.5, 0.5);
+    for pressed in [true, false, true, false] {
+        robot.harness.hover_at(at);
+        robot.button(at, pressed);
+    }
+    assert!(!robot.shows("Idle cores compute an error budget"), "the list is closed");
+    let begun = Instant::now();
+    while robot.shows("Can I trust this? not known yet") {
+        assert!(begun.elapsed() < Duration::from_secs(300), "waited in vain for the answer");
+        robot.harness.step();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // Other settings have no budget until somebody asks.
+    let mut settings = robot.settings();
+    settings.parameters.time_step_secs *= 0.5;
+    robot.change(0, settings);
+    robot.frames(2);
+    assert!(robot.shows("Can I trust this? not known yet"));
+}
+
 const BEYOND_REASON: [(&str, &str, &str); 3] = [
     ("Bond", "1e308", "Bond is 1e308, but must be at most 1e6"),
     ("μ, friction", "1e9", "μ is 1e9, but must be at most 1e6"),
     ("Δt, time step", "5", "Δt is 5, but must be at most 1"),
 ];
+
+#[test]
+fn a_time_step_that_is_too_long_is_warned_of_instead_of_praised() {
+    let mut robot = Robot::open(pile());
+    assert!(robot.shows("A larger Δt makes these grains stick better"), "the situation");
+    robot.type_number("Δt, time step", "1");
+    robot.frames(2);
+    assert!(robot.shows("Δt is too long: in one step a grain at rest falls by 19"));
+    assert!(!robot.shows("stick better") && robot.shows("Can I trust this? no"));
+}
 
 #[test]
 fn numbers_beyond_all_reason_are_refused() {

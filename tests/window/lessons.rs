@@ -48,7 +48,7 @@ const CLAIMS: [Claim; 6] = [
     Claim { lesson: "The solver's part", worlds: [1, 2], between: [0.0, 0.2] },
     Claim { lesson: "A law in which Δt means little", worlds: [0, 1], between: [0.1, 0.3] },
     Claim { lesson: "A law in which Δt means little", worlds: [2, 3], between: [-0.04, 0.04] },
-    Claim { lesson: "What friction hangs on", worlds: [1, 0], between: [0.2, 0.4] },
+    Claim { lesson: "What friction depends on", worlds: [1, 0], between: [0.2, 0.4] },
 ];
 
 #[test]
@@ -79,7 +79,7 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
         "The time step glues",
         "The solver's part",
         "A law in which Δt means little",
-        "What friction hangs on",
+        "What friction depends on",
     ];
     for title in titles {
         let lesson = lesson(title).1;

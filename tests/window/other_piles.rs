@@ -146,6 +146,18 @@ fn rain() -> Config {
 }
 
 #[test]
+fn a_first_pile_that_is_given_up_leaves_the_default_one() {
+    let mut robot = Robot::begin(rain(), Preferences::default(), |window| window);
+    robot.until("the rain", |state| {
+        state.run.frame.loading.as_ref().is_some_and(|loading| loading.preview.is_some())
+    });
+    robot.click("Cancel");
+    robot.until("a pile", |state| !state.run.frame.worlds.is_empty());
+    assert_eq!(robot.world().snapshot.grains.len(), 138);
+    robot.take_steps(1);
+}
+
+#[test]
 fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
     let mut robot = Robot::open(pile());
     robot.take_steps(5);

@@ -55,6 +55,19 @@ impl Robot {
         preferences: Preferences,
         renderer: fn(HarnessBuilder<AppState>) -> HarnessBuilder<AppState>,
     ) -> Self {
+        let mut robot = Self::begin(config, preferences, renderer);
+        robot.until("a scene", |state| !state.run.frame.worlds.is_empty());
+        // The sliders of a scene move the controls above them.
+        robot.frames(2);
+        robot
+    }
+
+    /// A window whose first scene is being loaded.
+    pub fn begin(
+        config: Config,
+        preferences: Preferences,
+        renderer: fn(HarnessBuilder<AppState>) -> HarnessBuilder<AppState>,
+    ) -> Self {
         let live = Live::spawn(LiveOptions::default()).unwrap();
         // Only tests that ask for other piles compute them.
         let preferences = Preferences { ensemble: false, starts_again: false, ..preferences };
@@ -62,12 +75,7 @@ impl Robot {
         let window = Harness::builder()
             .with_size(Vec2::new(1000.0, 700.0))
             .with_context_setup(theme::install);
-        let harness = renderer(window).build_ui_state(ui, state);
-        let mut robot = Self { harness };
-        robot.until("a scene", |state| !state.run.frame.worlds.is_empty());
-        // The sliders of a scene move the controls above them.
-        robot.frames(2);
-        robot
+        Self { harness: renderer(window).build_ui_state(ui, state) }
     }
 
     pub fn state(&self) -> &AppState {

@@ -1,6 +1,6 @@
 //! Alarms in words.
 
-use crate::app::budget::FAST;
+use crate::app::budget::{FAST, USUAL_OVERLAP};
 use crate::app::watched_run::WatchedRun;
 use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::{AlarmKind, Settings};
@@ -10,7 +10,7 @@ use crate::sim::{AlarmKind, Settings};
 pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     let of_world = |index: usize| {
         let world = &run.frame.worlds[index];
-        let is_news = |alarm: &&WorldAlarm| !is_asked_for(alarm, world);
+        let is_news = |alarm: &&WorldAlarm| !is_expected(alarm, world);
         let mut alarms: Vec<&WorldAlarm> = world.alarms.iter().rev().filter(is_news).collect();
         alarms.sort_by_key(|alarm| alarm.is_earlier);
         let said = move |alarm: &WorldAlarm| match run.compares() {
@@ -24,10 +24,15 @@ pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
-/// True where an alarm says what was chosen with open eyes: so many sweeps a step, solved or not, of a pile without cohesion.
-/// With cohesion such steps break bonds, and it is told.
-fn is_asked_for(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
-    let fast = FAST.among(&world.snapshot.surroundings);
+/// True for an alarm about something that was chosen, or that nearly every run shows: unsolved steps under Fast without
+/// cohesion (with cohesion they break bonds), and overlap up to [`USUAL_OVERLAP`].
+fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let Settings { parameters, solver, .. } = world.controls.settings;
-    alarm.kind == AlarmKind::SweepLimit && solver == fast && parameters.bond == 0.0
+    match alarm.kind {
+        AlarmKind::SweepLimit => {
+            solver == FAST.among(&world.snapshot.surroundings) && parameters.bond == 0.0
+        }
+        AlarmKind::Overlap => world.snapshot.observables.max_overlap <= USUAL_OVERLAP,
+        _ => false,
+    }
 }

@@ -6,10 +6,11 @@ use crate::app::budget::PAPER;
 use crate::app::theme;
 use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
+use crate::setting::Group;
 use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
-use crate::world::FrictionCone;
+use crate::world::{FrictionCone, Parameters};
 
 /// The paper's time steps, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
@@ -17,11 +18,9 @@ const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 const MOST_WORLDS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
-    ui.label(
-        RichText::new("Worlds from one initial state, kept at the same simulated time.")
-            .small()
-            .weak(),
-    );
+    let text = "Worlds from one initial state, kept at the same simulated time.";
+    let hint = "A preset keeps the stepper and the numbers that all worlds share. It solves steps as the scene does.";
+    ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
     presets(ui, run);
     let before: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
     if before.is_empty() {
@@ -53,7 +52,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
 struct LineUp {
     name: &'static str,
     hint: &'static str,
-    /// Made of the settings of the selected world.
+    /// Made of [`base`].
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
@@ -70,7 +69,7 @@ const LINE_UPS: [LineUp; 7] = [
     },
     LineUp {
         name: "Six Δt",
-        hint: "This Bond with the six time steps of the paper.",
+        hint: "One Bond with the six time steps of the paper.",
         worlds: |base| PAPER_TIME_STEPS.map(|secs| base.over(secs)).into(),
     },
     LineUp {
@@ -84,7 +83,7 @@ const LINE_UPS: [LineUp; 7] = [
     },
     LineUp {
         name: "Four Bonds",
-        hint: "This Δt with Bond 0, 20, 50 and 100.",
+        hint: "One Δt with Bond 0, 20, 50 and 100.",
         worlds: |base| [0.0, 20.0, 50.0, 100.0].map(|bond| base.with_bond(bond)).into(),
     },
     LineUp {
@@ -126,8 +125,26 @@ fn stepped(base: Settings, stepper: Stepper) -> Settings {
     settings.with_only_what_is_taken()
 }
 
+/// The settings that presets vary: those of the scene, with the stepper and the parameters that all worlds share. The
+/// solver, remedies and touch tolerance of a comparison before would act without a word.
+fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
+    let mut base = *scene;
+    let physics = Parameters::ABOUT.iter().filter(|about| about.name != "touch-tolerance");
+    for name in physics.chain([&Settings::STEPPER]).map(|about| about.name) {
+        let mut values = worlds.iter().map(|settings| settings.get(name));
+        let shared =
+            values.next().flatten().filter(|&first| values.all(|value| value == Some(first)));
+        if let Some(value) = shared {
+            base.set(name, value);
+        }
+    }
+    if base.stepper == scene.stepper { base } else { base.with_only_what_is_taken() }
+}
+
 fn presets(ui: &mut Ui, run: &mut WatchedRun) {
-    let Some(base) = run.wanted_settings() else { return };
+    let Some(start) = run.frame.start.as_ref() else { return };
+    let worlds: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
+    let base = base(start.settings(), &worlds);
     ui.horizontal_wrapped(|ui| {
         for LineUp { name, hint, worlds } in &LINE_UPS {
             if ui.button(*name).on_hover_text(*hint).clicked() {
@@ -170,6 +187,24 @@ mod tests {
         let controls: Vec<_> =
             all.iter().map(|&settings| Controls { settings, pull: None }).collect();
         (0..all.len()).map(|index| title_among(&controls, index)).collect()
+    }
+
+    #[test]
+    fn presets_keep_the_physics_that_all_worlds_share_and_solve_as_the_scene_does() {
+        let scene = Settings::default().with_bond(20.0);
+        let mut dragged = scene.with_bond(35.0).over(2e-3);
+        dragged.parameters.friction = 0.3;
+        assert_eq!(base(&scene, &[dragged]), dragged, "one world");
+        for LineUp { name, worlds, .. } in &LINE_UPS {
+            let made = base(&scene, &worlds(dragged));
+            assert_eq!(made.solver, scene.solver, "{name}");
+            assert_eq!(made.parameters.touch_tolerance, scene.parameters.touch_tolerance, "{name}");
+            let Parameters { bond, friction, .. } = made.parameters;
+            assert!(bond > 0.0 && friction == 0.3, "{name}: {bond}, {friction}");
+            assert_eq!(made.stepper, scene.stepper, "{name}");
+        }
+        let by_range = stepped(dragged, Stepper::Range);
+        assert_eq!(base(&scene, &[by_range, by_range.over(1e-3)]).stepper, Stepper::Range);
     }
 
     #[test]

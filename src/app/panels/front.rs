@@ -165,9 +165,16 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// A sentence on what the sliders do.
+/// A warning of a time step that is too long, or a sentence on what the sliders do.
 fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
-    let Some(settings) = context.run.world().map(|world| world.controls.settings) else { return };
+    let Some(world) = context.run.world() else { return };
+    let settings = world.controls.settings;
+    let too_long = budget::too_long(&settings, &world.snapshot.surroundings, world.substeps);
+    if let Some(warning) = too_long {
+        let text = RichText::new(warning).small().color(theme::warning(ui.visuals().dark_mode));
+        ui.add(egui::Label::new(text).truncate());
+        return;
+    }
     let text = if !context.preferences.starts_again && !context.run.frame.at_start() {
         LIVE
     } else if context.run.slumps() && !context.touring {

@@ -39,7 +39,7 @@ const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery) {
     scene_box(ui, context, gallery);
-    if context.run.config.named() == Config::DEFAULT_SCENE {
+    if context.run.config().named() == Config::DEFAULT_SCENE {
         new_pile(ui, context);
     }
 }
@@ -96,7 +96,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
 fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let id = egui::Id::unique("new pile");
     let typed = ui.data(|data| data.get_temp::<NewPile>(id));
-    let mut pile = typed.unwrap_or_else(|| context.run.config.source.new_pile());
+    let mut pile = typed.unwrap_or_else(|| context.run.config().source.new_pile());
     ui.horizontal(|ui| {
         let label = ui.label("Grains");
         let grains = egui::DragValue::new(&mut pile.grains).range(1..=MOST_GRAINS).speed(2.0);
@@ -151,6 +151,7 @@ fn cost(grains: usize) -> String {
 
 /// A new pile with the numbers that the controls show.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
+    let config = run.config();
     let &NewPile { grains, seed, box_width_in_diameters, deposition } = pile;
     let source = SceneSource {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
@@ -159,9 +160,9 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
         box_width: Some(box_width_in_diameters),
         deposition: (deposition != Deposition::default()).then_some(deposition),
         initial: None,
-        ..run.config.source.clone()
+        ..config.source
     };
-    let config = Config { source, ..run.config.clone() };
+    let config = Config { source, ..config };
     match run.wanted_settings() {
         Some(settings) => config.with_settings(&settings),
         None => config,

@@ -215,7 +215,7 @@ fn scene_picture(
         let others = others.map_or(String::new(), |text| format!("\n{text}"));
         PicturedWorld {
             snapshot: world.snapshot.clone(),
-            title: context.run.numbered_title(index),
+            settings: world.controls.settings,
             note: context.run.slump_text(index) + &others,
         }
     });

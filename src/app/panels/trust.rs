@@ -1,5 +1,6 @@
 //! "Can I trust this?": one word on the run that is shown, and the list behind it: how its steps were solved, what went
-//! wrong, what other starts come to, and an error budget that idle cores compute while the list is open.
+//! wrong, the slump of other initial states, and an error budget. Idle cores compute the budget once the list has been
+//! opened. They continue when the list is closed, until the settings change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,7 +11,7 @@ use super::alarms::alarms;
 use super::grain::compact;
 use crate::Instant;
 use crate::app::IN_BROWSER;
-use crate::app::budget::{FAST, SOLVED};
+use crate::app::budget::{FAST, SOLVED, too_long};
 use crate::app::context::PanelContext;
 use crate::app::ensemble::on_idle_cores;
 use crate::app::theme;
@@ -66,7 +67,11 @@ impl TrustPanel {
         let is_bad = world.alarms.iter().any(|alarm| BAD.contains(&alarm.kind));
         let steps = world.snapshot.observables.step.max(1);
         let unsolved = world.unconverged_steps as f64;
-        if world.failure.is_some() || is_bad || unsolved > FEW * steps as f64 {
+        if world.failure.is_some()
+            || is_bad
+            || warning(world).is_some()
+            || unsolved > FEW * steps as f64
+        {
             return Trust::No;
         }
         self.of_budget(run).map_or(Trust::NotKnownYet, |(trust, _)| trust)
@@ -97,14 +102,10 @@ impl TrustPanel {
 
     /// The list, where it is open.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
+        self.follow(ui, context);
         if !self.is_open {
-            // Nobody looks: idle cores are to be idle.
-            if self.budget.as_ref().is_some_and(|budget| budget.work.is_some()) {
-                self.budget = None;
-            }
             return;
         }
-        self.follow(ui, context);
         let mut is_open = true;
         egui::Window::new("Can I trust this?")
             .anchor(Align2::LEFT_BOTTOM, [12.0, -40.0])
@@ -124,7 +125,9 @@ impl TrustPanel {
                     true => ui.visuals().text_color(),
                     false => theme::warning(ui.visuals().dark_mode),
                 };
-                for alarm in alarms(context.run) {
+                for alarm in
+                    context.run.world().and_then(warning).into_iter().chain(alarms(context.run))
+                {
                     ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
                 }
                 if let (Some(said), Some(world)) = (
@@ -172,7 +175,7 @@ impl TrustPanel {
         {
             budget.failure = outcome.err().map(|error| error.to_string());
         }
-        if IN_BROWSER {
+        if IN_BROWSER || !(self.is_open || self.budget.is_some()) {
             return;
         }
         let line = context.run.command_line();
@@ -182,12 +185,19 @@ impl TrustPanel {
         let is_from_start =
             context.run.world().is_some_and(|world| world.recorded_from_secs == 0.0);
         let settings = context.run.wanted_settings();
-        let config = settings.map(|settings| context.run.config.clone().with_settings(&settings));
+        let config = settings.map(|settings| context.run.config().with_settings(&settings));
         self.budget = match (line, config) {
-            (Some(of), Some(config)) if is_from_start => Some(begin(ui, context, of, config)),
+            (Some(of), Some(config)) if is_from_start && self.is_open => {
+                Some(begin(ui, context, of, config))
+            }
             _ => None,
         };
     }
+}
+
+/// A warning of the time step of a world.
+fn warning(world: &WorldFrame) -> Option<String> {
+    too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
 
 /// How the steps of a world were solved, a line a statement.
