@@ -172,7 +172,7 @@ impl FilmOrder {
     }
 }
 
-/// True where a run has come to a time, or no later step comes nearer to it.
+/// True if a run has come to a time, or no later step comes nearer to it.
 fn is_nearest(simulation: &Simulation, time_secs: f64) -> bool {
     let half_a_step = 0.5 * simulation.settings().parameters.time_step_secs;
     simulation.time_secs() + half_a_step > time_secs

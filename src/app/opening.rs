@@ -22,7 +22,7 @@ pub enum Opening {
     Scene(#[serde(with = "as_json")] Box<Config>),
     /// A lesson by its place, with its worlds side by side.
     Lesson(usize),
-    /// What a link tells of, with what its worlds have come to. Settings are those that it says, whatever the window
+    /// The content of a link, with the state of its worlds. Settings are those that it says, whatever the window
     /// would choose.
     Link(String),
     /// A saved run, to go on with it.

@@ -29,22 +29,22 @@ pub struct Preferences {
     pub page: Option<Page>,
     /// True while the bars above and below the scene are folded.
     pub folded: bool,
-    /// True where a slider of the front starts the run again.
+    /// True if a slider of the front starts the run again.
     pub starts_again: bool,
-    /// True where the run before shows behind the present one.
+    /// True if the run before shows behind the present one.
     pub ghost: bool,
-    /// True where idle cores compute the mean over other piles.
+    /// True if idle cores compute the mean over other piles.
     #[serde(rename = "other_piles")]
     pub ensemble: bool,
     /// True while the plots are open.
     pub plots: bool,
     /// The quantities that are plotted, by their names.
     pub quantities: Vec<String>,
-    /// What is plotted against what besides.
+    /// Axes of the plot of two quantities.
     pub chosen_plot: ChosenPlot,
     /// The histogram that shows, by its name in files.
     pub histogram: String,
-    /// True where an arrow always says where gravity points.
+    /// True if an arrow always says where gravity points.
     pub gravity: bool,
     /// Size of the window, points; none before the first.
     pub window_points: Option<[f64; 2]>,

@@ -46,7 +46,7 @@ fn start_with(
     }
 }
 
-/// True where grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
+/// True if grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
 /// says nothing. Nor does it of what hangs from a disc that is fixed.
 fn slumps(scene: &Scene) -> bool {
     let is_down =

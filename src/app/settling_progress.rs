@@ -17,7 +17,7 @@ const INTERVAL: Duration = Duration::from_millis(30);
 /// Before this part is done, how long it took says nothing of how long it will take.
 const PART_THAT_TELLS: f64 = 0.05;
 
-/// What is told of a pile that is being made.
+/// Progress of a pile that is being made.
 pub(super) struct SettlingProgress {
     begun: Instant,
     looked: Option<Instant>,

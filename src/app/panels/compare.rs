@@ -154,7 +154,7 @@ fn presets(ui: &mut Ui, run: &mut WatchedRun) {
     });
 }
 
-/// One world's row. True where it is to be removed.
+/// One world's row. True if it is to be removed.
 fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {

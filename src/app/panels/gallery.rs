@@ -66,7 +66,7 @@ impl Gallery {
         shown.response
     }
 
-    /// Pictures of another look are drawn anew.
+    /// Pictures in another style are drawn again.
     fn follow_style(&mut self, ui: &Ui, preferences: &Preferences) {
         let style = Style {
             scale_bar: false,

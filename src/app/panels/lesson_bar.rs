@@ -31,7 +31,7 @@ impl LessonBar {
         }
     }
 
-    /// True where worlds of a lesson are no longer those that it speaks of.
+    /// True if worlds of a lesson are no longer those that it speaks of.
     fn has_other_worlds(&self, run: &WatchedRun, lesson: &Lesson) -> bool {
         let Some(start) = &run.frame.start else { return false };
         let worlds = (lesson.worlds)(*start.settings());

@@ -180,7 +180,7 @@ impl WorldCell<'_> {
     }
 }
 
-/// Shows it in place of the worlds, in so many pixels. True where there is anything to see.
+/// Shows it in place of the worlds, in so many pixels. True if there is anything to see.
 fn show_making(
     ui: &Ui,
     context: &mut PanelContext<'_>,

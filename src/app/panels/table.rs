@@ -16,7 +16,7 @@ const FONT: f32 = 10.5;
 /// What is asked of the table.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BodyTable {
-    /// True where it has contacts; else it has grains.
+    /// True if it has contacts; else it has grains.
     contacts: bool,
     /// What a row has to fulfil.
     filter: String,
@@ -29,7 +29,7 @@ struct ShownColumn<T> {
     name: &'static str,
     /// Characters.
     width: usize,
-    /// True where numbers are whole.
+    /// True if numbers are whole.
     whole: bool,
     hint: &'static str,
     /// Of one of the snapshot's with its number, in units of d where lengths are meant.

@@ -152,7 +152,7 @@ impl App {
         events.exit();
     }
 
-    /// Opens the graphics device anew after it was lost. The old surface goes first: two surfaces
+    /// Opens the graphics device again after it was lost. The old surface goes first: two surfaces
     /// of one window exclude each other. A new context sends all textures again; the old one's
     /// memory keeps the layout.
     fn recover(&mut self, events: &ActiveEventLoop) {

@@ -36,7 +36,7 @@ pub(super) struct WindowSurface {
     screen: Screen,
     software: bool,
     lost: Arc<AtomicBool>,
-    /// Textures that the device is still to be told of: of frames that were not drawn.
+    /// Textures that the device has not received yet, because their frames were not drawn.
     textures: egui::TexturesDelta,
 }
 
@@ -126,7 +126,7 @@ impl WindowSurface {
         })
     }
 
-    /// True where the processor draws.
+    /// True if the processor draws.
     pub(super) fn is_software(&self) -> bool {
         self.software
     }
@@ -158,7 +158,7 @@ impl WindowSurface {
     /// Draws what a pass of egui put out.
     pub(super) fn draw(&mut self, context: &egui::Context, output: egui::FullOutput) -> Drawn {
         self.textures.append(output.textures_delta);
-        // Callbacks of the device, the one that tells of its loss included, run in here.
+        // Callbacks of the device, including the one that reports its loss, run in here.
         let polled = self.screen.device.poll(wgpu::PollType::Poll);
         if polled.is_err() || self.lost.load(Ordering::Relaxed) {
             self.textures.clear();
