@@ -44,22 +44,14 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     }
 }
 
+/// Sliders sense drags only.
 #[test]
-fn a_double_click_on_a_number_resets_it_and_help_says_so() {
+fn help_promises_no_double_click_on_a_slider() {
     let mut robot = Robot::open(pile());
-    robot.set(|settings| settings.parameters.bond = 75.0);
-    let field = robot.harness.get_by_role_and_label(egui::Role::TextInput, "Bond").rect();
-    robot.harness.event(egui::Event::PointerMoved(field.center()));
-    for pressed in [true, false, true, false] {
-        let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
-        let pos = field.center();
-        robot.harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
-    }
-    robot.frames(2);
-    robot.settle();
-    assert_eq!(robot.settings().parameters.bond, 20.0);
     robot.click("Help");
-    assert!(robot.shows("double-click the field") && !robot.shows("Double-click a slider"));
+    robot.frames(2);
+    assert!(robot.shows("Type any value into the field above a slider"));
+    assert!(!robot.shows("Double-click") && !robot.shows("double-click"));
 }
 
 #[test]

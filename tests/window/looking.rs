@@ -63,7 +63,7 @@ fn the_end_of_the_help_is_within_reach_on_a_low_window() {
     let mut robot = Robot::open(pile());
     robot.harness.set_size(egui::vec2(720.0, 480.0));
     robot.key(egui::Key::H);
-    let end = "Double-click a slider";
+    let end = "Type any value into";
     robot.harness.get_by_label_contains(end).scroll_to_me();
     robot.frames(10);
     let end = robot.harness.get_by_label_contains(end).rect();

@@ -75,6 +75,6 @@ fn contents(ui: &mut Ui) {
         });
         ui.add_space(6.0);
     }
-    ui.label("Type any value into the field above a slider, or double-click the field to reset the value. Drop a scene \
-        (TOML), discs (CSV), a saved run (.slump) or a session on the window to open them.");
+    ui.label("Type any value into the field above a slider. Drop a scene (TOML), discs (CSV), a saved run (.slump) or a \
+        session on the window to open them.");
 }
