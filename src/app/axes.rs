@@ -23,7 +23,8 @@ pub(super) fn bare_plot<'a>(
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
 }
 
-/// A plot with an axis along x in that unit; `log` says which axes are logarithmic.
+/// A plot with an axis along x in that unit; `log` says which axes are logarithmic. Numbers along a logarithmic axis with
+/// a unit are written in full.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -80,8 +81,11 @@ fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
 /// Labels of the marks: numbers, or the powers of ten that numbers stand for.
 fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
     hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
-        if log {
+        if log && unit.is_empty() {
             return format!("1e{}", mark.value);
+        }
+        if log {
+            return format!("{}{unit}", 10f64.powf(mark.value));
         }
         format!("{}{unit}", decimal(mark.value, mark.step_size))
     })

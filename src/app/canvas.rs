@@ -5,7 +5,6 @@ use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use image::RgbaImage;
 
 use super::painting::{TargetFormat, fill};
-use super::plots::{PlotData, WorldCurve, draw};
 use super::theme;
 use crate::error::{Error, Result};
 use crate::render::Gpu;
@@ -155,9 +154,9 @@ impl Canvas {
     /// Draws a picture of plots, with light ink on a `dark` ground.
     pub(super) fn print(
         &mut self,
-        data: &PlotData,
         size: [u32; 2],
         dark: bool,
+        plots: impl Fn(&mut egui::Ui),
     ) -> Result<RgbaImage> {
         let context = egui::Context::default();
         theme::install(&context);
@@ -166,18 +165,7 @@ impl Canvas {
             let ground = ui.visuals().extreme_bg_color;
             fill(ui, ui.max_rect(), ground);
             let frame = egui::Frame::new().inner_margin(12.0);
-            egui::CentralPanel::default_margins().frame(frame).show(ui, |ui| {
-                // What the colours mean, where there is more than one.
-                if data.worlds.len() > 1 {
-                    ui.horizontal_wrapped(|ui| {
-                        for WorldCurve { name, colour, .. } in &data.worlds {
-                            ui.label(egui::RichText::new("■").color(*colour));
-                            ui.label(name);
-                        }
-                    });
-                }
-                draw(ui, data);
-            });
+            egui::CentralPanel::default_margins().frame(frame).show(ui, |ui| plots(ui));
         };
         let mut image = None;
         for pass in 1..=PASSES {

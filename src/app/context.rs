@@ -24,6 +24,8 @@ pub(crate) enum Request {
     LoadSaved(PathBuf),
     /// Go to a lesson.
     Visit(usize),
+    /// Forget the points of Fig. 5a.
+    ForgetReleased,
     /// End the lessons.
     LeaveLessons,
     /// Save the moment of the selected world.

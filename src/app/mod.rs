@@ -36,6 +36,7 @@ mod setting_control;
 mod settling_progress;
 mod state;
 pub mod theme;
+mod time_step_figure;
 mod titles;
 mod told;
 mod ui;

@@ -14,9 +14,9 @@ use crate::render::numbers::si_prefix;
 use crate::sim::{Beside, Observables, Quantity};
 
 /// Least width of a plot, points: below it fewer are shown in a row.
-const LEAST_WIDTH: f32 = 150.0;
+pub(super) const LEAST_WIDTH: f32 = 150.0;
 /// What an axis of slump shows at least: runs are compared by eye.
-const LEAST_SLUMP: f64 = 0.4;
+pub(super) const LEAST_SLUMP: f64 = 0.4;
 /// The quantity that other piles are told of.
 const OTHERS: &str = "slump";
 /// How strong the colour of single other piles is.
@@ -40,6 +40,23 @@ pub(crate) struct PlotData {
     pub now_secs: f64,
     /// Plots reach at least to here, s.
     pub until_secs: f64,
+}
+
+/// Draws plots for a picture, below the names of their colours where there is more than one.
+pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
+    if data.worlds.len() > 1 {
+        let entries = data.worlds.iter().map(|world| (world.name.as_str(), world.colour));
+        ui.horizontal_wrapped(|ui| colour_key(ui, entries));
+    }
+    draw(ui, data);
+}
+
+/// What the colours of lines mean.
+pub(super) fn colour_key<'a>(ui: &mut Ui, entries: impl Iterator<Item = (&'a str, Color32)>) {
+    for (name, colour) in entries {
+        ui.label(RichText::new("■").color(colour));
+        ui.label(name);
+    }
 }
 
 /// Draws the plots into the space that is left. Returns the time that was clicked, s.
@@ -141,8 +158,8 @@ fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
         return Vec::new();
     };
-    let run = |run: &Vec<[f64; 2]>| {
-        let line = Line::new(format!("{}: another pile", world.name), until_now(run, now_secs));
+    let run = |run: &(usize, Vec<[f64; 2]>)| {
+        let line = Line::new(format!("{}: another pile", world.name), until_now(&run.1, now_secs));
         line.color(world.colour.gamma_multiply(OTHERS_STRENGTH)).width(0.8)
     };
     let mean: Vec<_> =
@@ -400,7 +417,7 @@ mod tests {
     #[test]
     fn other_piles_are_a_line_each_and_their_mean_and_none_tells_its_end_before() {
         let times_secs = vec![0.0, 0.1, 0.2];
-        let run = |slope: f64| times_secs.iter().map(|at| [*at, slope * at]).collect();
+        let run = |slope: f64| (0, times_secs.iter().map(|at| [*at, slope * at]).collect());
         let band = Band {
             runs: [1.0, 2.0, 6.0].map(run).into(),
             means: times_secs.iter().map(|at| 3.0 * at).collect(),

@@ -102,6 +102,7 @@ impl AppState {
             Request::Load(config) => self.load(*config),
             Request::LoadSaved(path) => self.load_saved(&path),
             Request::Visit(at) => self.visit(at),
+            Request::ForgetReleased => self.ensemble.forget_released(),
             Request::LeaveLessons => self.leave_lessons(),
             Request::SaveState => self.save_state(context),
             Request::SaveSession => self.save_session(context),

@@ -51,7 +51,7 @@ fn headless(settings: &Settings) -> (f64, f64) {
         let mut scene: Scene = small_pile().scene_from(grains).expect("a scene");
         scene.set_settings(*settings);
         let mut simulation = scene.simulation().expect("a sound scene");
-        simulation.take_steps(100).expect("finite states");
+        simulation.take_steps(simulation.step_at(0.1)).expect("finite states");
         simulation.observables().slump
     };
     let slumps = [1, 3, 4, 5, 6, 7, 9, 10].map(slump);
@@ -93,6 +93,54 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_eq!(told, None, "the settings of the run changed on its way");
     robot.key(egui::Key::R);
     assert_near(mean(&mut robot, 0, 0.1), headless(&other));
+}
+
+/// Saves the points of Fig. 5a: Δt, mean, half the interval and number of piles of each.
+fn saved_points(robot: &mut Robot) -> Vec<(f64, (f64, f64, usize))> {
+    robot.click("CSV");
+    let table = read(&robot.saved());
+    let point = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [time_step, mean, half] = [2, 3, 4].map(|cell| cells[cell].parse().expect("a number"));
+        (time_step, (mean, half, cells[5].parse().expect("a count")))
+    };
+    table.lines().skip(1).map(point).collect()
+}
+
+#[test]
+fn released_piles_leave_a_point_each_though_the_next_is_released_before_their_others_are_done() {
+    let (cache, folder) = (folder(), folder());
+    let mut robot = open(cache.path());
+    robot.state_mut().preferences.folder = folder.path().to_owned();
+    robot.state_mut().preferences.starts_again = true;
+    robot.send(Command::SetPace(Pace::Max));
+    let long = robot.settings().over(2e-3);
+    let short = robot.settings();
+    robot.send(Command::Play);
+    robot.until("a step", |state| state.run.frame.recorded_secs() > 0.0);
+    assert!(!robot.state().controls.contains_key("clear figure"), "nothing tells its end before");
+    robot.type_number("Δt, time step", "2e-3");
+    robot.until("the end", |state| !state.run.frame.playing);
+    let begun = Instant::now();
+    let points = loop {
+        robot.send(Command::SetPull(0, None));
+        if robot.state().controls.contains_key("clear figure") {
+            let points = saved_points(&mut robot);
+            if points.len() == 2 && points.iter().all(|(_, (.., count))| *count == 8) {
+                break points;
+            }
+        }
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for two points");
+        std::thread::sleep(Duration::from_millis(50));
+    };
+    for ((time_step, point), settings) in points.into_iter().zip([short, long]) {
+        assert_eq!(time_step, settings.parameters.time_step_secs);
+        assert_near(point, headless(&settings));
+    }
+    // The pile that is shown keeps its point.
+    robot.click("Clear");
+    robot.harness.step();
+    assert_eq!(saved_points(&mut robot).len(), 1);
 }
 
 #[test]

@@ -15,6 +15,7 @@ use super::user_folder::user_folder;
 use crate::live::{LiveFrame, LiveStart};
 use crate::scene::NewPile;
 use crate::sim::Settings;
+pub(crate) use pool::Released;
 pub(super) use pool::on_idle_cores;
 use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
@@ -36,6 +37,18 @@ pub struct Ensemble {
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
     worlds: Vec<Option<Settings>>,
+    /// All that were released of one kind of pile, and that kind.
+    released: Vec<Released>,
+    kind: Option<PileKind>,
+}
+
+/// Piles whose runs can be compared: those with the same kind have the same other piles.
+#[derive(PartialEq)]
+struct PileKind {
+    scene: String,
+    duration_secs: f64,
+    base_width: Option<f64>,
+    piles: Vec<NewPile>,
 }
 
 impl Ensemble {
@@ -79,26 +92,82 @@ impl Ensemble {
             self.stop();
             self.piles = frame.start.as_ref().map_or_else(Vec::new, |opened| others_of(opened));
             self.opened.clone_from(&frame.start);
+            self.note_kind();
         }
+        let all = frame.worlds.iter().map(|world| {
+            let is_from_the_start = world.recorded_from_secs == 0.0;
+            (world.is_even && is_from_the_start).then_some(world.controls.settings)
+        });
+        let all: Vec<_> = all.collect();
+        let is_new = self.note_released(frame, &all);
         if !is_wanted {
             return self.stop();
         }
         if !self.is_possible() {
             return;
         }
-        let Self { folder: Some(folder), opened: Some(opened), piles, pool, worlds } = self else {
+        let Self {
+            folder: Some(folder), opened: Some(opened), piles, pool, worlds, released, ..
+        } = self
+        else {
             return;
         };
-        let all = frame.worlds.iter().map(|world| {
-            let is_from_the_start = world.recorded_from_secs == 0.0;
-            (world.is_even && is_from_the_start).then_some(world.controls.settings)
-        });
-        let all: Vec<_> = all.collect();
-        let pool = pool.get_or_insert_with(|| WorkerPool::start(folder, context, opened, piles));
-        if *worlds != all {
-            pool.follow(all.clone());
+        let pool =
+            pool.get_or_insert_with(|| WorkerPool::start(folder, context, opened, piles, released));
+        pool.note_runs(released);
+        if *worlds != all || is_new {
+            pool.follow(all.clone(), released.iter().map(|(settings, _)| *settings).collect());
             *worlds = all;
         }
+    }
+
+    /// Forgets the released piles of another kind.
+    fn note_kind(&mut self) {
+        let Some(opened) = self.opened.as_ref().filter(|_| !self.piles.is_empty()) else { return };
+        let kind = Some(PileKind {
+            scene: opened.scene.name.clone(),
+            duration_secs: opened.scene.duration_secs,
+            base_width: opened.config.source.base_width,
+            piles: self.piles.clone(),
+        });
+        if self.kind != kind {
+            self.released.clear();
+            self.kind = kind;
+        }
+    }
+
+    /// Notes the settings of worlds that were released. Returns true if some of them are new.
+    fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
+        let before = self.released.len();
+        for (world, settings) in frame.worlds.iter().zip(all) {
+            if let Some(settings) = settings
+                && world.recorded_secs > 0.0
+                && !self.piles.is_empty()
+                && !self.released.iter().any(|(own, _)| own == settings)
+            {
+                self.released.push((*settings, Arc::default()));
+            }
+        }
+        self.released.len() > before
+    }
+
+    /// Forgets all piles that were released, except those that are shown.
+    pub(super) fn forget_released(&mut self) {
+        self.released.clear();
+    }
+
+    /// Settings of piles that were released, and the runs of their other piles. A pile that is shown is among them once it
+    /// has reached its end.
+    pub(crate) fn released(&self, frame: &LiveFrame) -> impl Iterator<Item = &Released> {
+        let end_secs = self.kind.as_ref().map_or(f64::INFINITY, |kind| kind.duration_secs);
+        let is_on_its_way = move |settings: &Settings| {
+            frame.worlds.iter().any(|world| {
+                let next_secs = world.recorded_secs + settings.parameters.time_step_secs;
+                world.controls.settings == *settings && next_secs <= end_secs
+            })
+        };
+        let is_open = !self.piles.is_empty();
+        self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
     }
 
     /// How the other piles of a world come about, and which they are.
@@ -168,7 +237,7 @@ mod tests {
     fn told(slumps: &[f64], settling: Option<(usize, f32)>) -> EnsembleSummary {
         let runs: Vec<_> = slumps.iter().map(|&slump| vec![[0.0, 0.0], [1.0, slump]]).collect();
         EnsembleSummary {
-            band: Arc::new(Band::of(&runs.iter().collect::<Vec<_>>())),
+            band: Arc::new(Band::of(&runs.iter().enumerate().collect::<Vec<_>>())),
             seeds: vec![1, 2, 3],
             failed: 0,
             settling,

@@ -83,14 +83,19 @@ pub(crate) struct EnsembleSummary {
     pub settling: Option<(usize, f32)>,
 }
 
+/// Settings of a pile that was released, and the runs of its other piles.
+pub(crate) type Released = (Settings, Arc<Band>);
+
 /// What is to be done, and what was begun.
 #[derive(Default)]
 struct Jobs {
     /// None where a world has no others.
     worlds: Vec<Option<Settings>>,
+    /// Settings of all piles that were released. Their runs wait for those of the worlds.
+    released: Vec<Settings>,
     begun: Vec<(PileJob, JobState)>,
     /// Of runs that have come to their end, by their settings.
-    bands: Vec<(Settings, Arc<Band>)>,
+    bands: Vec<Released>,
     is_over: bool,
 }
 
@@ -103,23 +108,30 @@ impl Jobs {
         !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
     }
 
-    /// Begins what is to be done next: pile by pile, each for all worlds, so that all have as many. With it come
-    /// the grains that are to run.
+    /// Begins the next job: first those of the worlds, then those of earlier settings, the newest first. With it come the
+    /// grains that are to run.
     fn next(&mut self, piles: usize) -> Option<(PileJob, Vec<Grain>)> {
-        let settings: Vec<Settings> = self.worlds.iter().copied().flatten().collect();
+        let worlds = self.worlds.iter().copied().flatten().collect();
+        let earlier = self.released.iter().rev().map(|&settings| vec![settings]);
+        let mut groups = std::iter::once(worlds).chain(earlier);
+        let next = groups.find_map(|settings| self.next_of(&settings, piles))?;
+        self.begun.push((next.0, JobState::Underway(0.0)));
+        Some(next)
+    }
+
+    /// The next job of some settings: pile by pile, each for all of these settings, so that all have as many.
+    fn next_of(&self, settings: &[Settings], piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         if settings.is_empty() {
             return None;
         }
-        let next = (0..piles).find_map(|pile| match self.state(PileJob::Settle(pile)) {
+        (0..piles).find_map(|pile| match self.state(PileJob::Settle(pile)) {
             None => Some((PileJob::Settle(pile), Vec::new())),
             Some(JobState::Settled(grains)) => {
                 let mut runs = settings.iter().map(|&settings| PileJob::Run(pile, settings));
                 runs.find(|&run| self.state(run).is_none()).map(|run| (run, grains.clone()))
             }
             Some(_) => None,
-        })?;
-        self.begun.push((next.0, JobState::Underway(0.0)));
-        Some(next)
+        })
     }
 
     /// Notes how far a job has come, where it is still wanted.
@@ -135,7 +147,9 @@ impl Jobs {
             && is_run
         {
             let done = self.begun.iter().filter_map(|(job, state)| match (job, state) {
-                (PileJob::Run(_, own), JobState::Ran(series)) if *own == settings => Some(series),
+                (PileJob::Run(pile, own), JobState::Ran(series)) if *own == settings => {
+                    Some((*pile, series))
+                }
                 _ => None,
             });
             let band = Arc::new(Band::of(&done.collect::<Vec<_>>()));
@@ -164,19 +178,27 @@ pub(super) struct WorkerPool {
 
 impl WorkerPool {
     /// Starts a thread for each idle core. Initial states are kept in `folder`; `context` is asked for a frame where
-    /// there is something new.
+    /// there is something new. The runs of `released` are not computed again.
     pub(super) fn start(
         folder: &Path,
         context: &egui::Context,
         opened: &Arc<LiveStart>,
         piles: &[NewPile],
+        released: &[Released],
     ) -> Self {
+        let mut jobs = Jobs { bands: released.to_vec(), ..Jobs::default() };
+        for (settings, band) in released {
+            let begun = |(pile, series): &(usize, SlumpSeries)| {
+                (PileJob::Run(*pile, *settings), JobState::Ran(series.clone()))
+            };
+            jobs.begun.extend(band.runs.iter().map(begun));
+        }
         let state = Arc::new(PoolState {
             opened: Arc::clone(opened),
             piles: piles.to_vec(),
             folder: folder.to_owned(),
             context: context.clone(),
-            jobs: Mutex::default(),
+            jobs: Mutex::new(jobs),
             news: Condvar::new(),
         });
         // A pool of one thread each: what a method does in parallel stays on it, below all others.
@@ -192,17 +214,29 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Has worlds with these settings. What was computed for others is forgotten.
-    pub(super) fn follow(&self, worlds: Vec<Option<Settings>>) {
+    /// Has worlds with these settings, and piles with these settings that were released. What was computed for others is
+    /// forgotten.
+    pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
         let mut jobs = self.state.lock();
-        let is_wanted = |settings: &Settings| worlds.contains(&Some(*settings));
+        let is_wanted =
+            |settings: &Settings| worlds.contains(&Some(*settings)) || released.contains(settings);
         jobs.begun.retain(|(job, _)| match job {
             PileJob::Settle(_) => true,
             PileJob::Run(_, settings) => is_wanted(settings),
         });
         jobs.bands.retain(|(settings, _)| is_wanted(settings));
-        jobs.worlds = worlds;
+        (jobs.worlds, jobs.released) = (worlds, released);
         self.state.news.notify_all();
+    }
+
+    /// Notes the runs that have come to their end.
+    pub(super) fn note_runs(&self, released: &mut [Released]) {
+        let jobs = self.state.lock();
+        for (settings, band) in released {
+            if let Some((_, newer)) = jobs.bands.iter().find(|(own, _)| own == settings) {
+                band.clone_from(newer);
+            }
+        }
     }
 
     /// What is said of the others of a world; nothing where it has none.

@@ -21,20 +21,20 @@ pub(crate) struct Band {
     /// Upper ends of the intervals; ∞ for one run.
     pub highs: Vec<f64>,
     pub count: usize,
-    /// The runs themselves.
-    pub runs: Vec<SlumpSeries>,
+    /// The runs themselves, each with the place of its pile among the others.
+    pub runs: Vec<(usize, SlumpSeries)>,
 }
 
 impl Band {
     /// Of runs with the same settings, which have the same times.
-    pub(super) fn of(runs: &[&SlumpSeries]) -> Self {
-        let all = runs.iter().map(|&run| run.clone()).collect();
+    pub(super) fn of(runs: &[(usize, &SlumpSeries)]) -> Self {
+        let all = runs.iter().map(|&(pile, run)| (pile, run.clone())).collect();
         let mut band = Self { count: runs.len(), runs: all, ..Self::default() };
-        let shared = runs.iter().map(|run| run.len()).min().unwrap_or(0);
+        let shared = runs.iter().map(|(_, run)| run.len()).min().unwrap_or(0);
         for index in 0..shared {
-            let slumps: Vec<f64> = runs.iter().map(|run| run[index][1]).collect();
+            let slumps: Vec<f64> = runs.iter().map(|(_, run)| run[index][1]).collect();
             let mean = study::mean(&slumps);
-            band.times_secs.push(runs[0][index][0]);
+            band.times_secs.push(runs[0].1[index][0]);
             band.means.push(mean.mean);
             band.highs.push(mean.high);
         }
@@ -136,7 +136,8 @@ mod tests {
 
     #[test]
     fn means_and_intervals_are_those_of_student() {
-        let band = Band::of(&[&run([0.0, 1.0, 2.0]), &run([0.0, 2.0, 4.0]), &run([0.0, 3.0, 9.0])]);
+        let runs = [[0.0, 1.0, 2.0], [0.0, 2.0, 4.0], [0.0, 3.0, 9.0]].map(run);
+        let band = Band::of(&runs.iter().enumerate().collect::<Vec<_>>());
         assert_eq!((band.count, &band.means), (3, &vec![0.0, 2.0, 5.0]));
         // Tables: t(0.975; 2) = 4.302653; the standard error of 1, 2, 3 is 1/√3.
         let half = band.highs[1] - band.means[1];
@@ -149,7 +150,7 @@ mod tests {
 
     #[test]
     fn one_run_has_no_interval_and_none_nothing() {
-        let band = Band::of(&[&run([0.0, 1.0, 2.0])]);
+        let band = Band::of(&[(0, &run([0.0, 1.0, 2.0]))]);
         assert_eq!(band.at(0.5), Some((1.0, f64::INFINITY)));
         assert_eq!(Band::of(&[]).at(0.0), None);
     }

@@ -3,18 +3,73 @@
 use egui::{RichText, Ui};
 
 use crate::app::IN_BROWSER;
-use crate::app::context::PanelContext;
+use crate::app::context::{PanelContext, Request};
 use crate::app::exports::write_table;
 use crate::app::file_names::free_path;
-use crate::app::plots::{PlotData, WorldCurve, draw};
+use crate::app::plots::{LEAST_WIDTH, PlotData, WorldCurve, draw, draw_with_key};
 use crate::app::preferences::Preferences;
 use crate::app::theme;
+use crate::app::time_step_figure::TimeStepFigure;
 use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
+use crate::output::write_file;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 use crate::study::png::write_png;
 
+/// Part of the width that the slump against Δt gets.
+const FIGURE_PART: f32 = 0.4;
+
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let width = ui.available_width();
+    let Some(figure) = figure(ui, context).filter(|_| width > 4.0 * LEAST_WIDTH) else {
+        return curves(ui, context);
+    };
+    let height = ui.available_height();
+    ui.horizontal(|ui| {
+        let left = egui::vec2((1.0 - FIGURE_PART) * width, height);
+        ui.allocate_ui(left, |ui| ui.vertical(|ui| curves(ui, context)));
+        ui.vertical(|ui| figure.draw(ui, |ui| figure_buttons(ui, context, &figure)));
+    });
+}
+
+/// The slump of the piles that were released against Δt, where slump is plotted.
+fn figure(ui: &Ui, context: &PanelContext<'_>) -> Option<TimeStepFigure> {
+    let mut shown = QUANTITIES.iter().filter(|it| is_shown(context.run, context.preferences, it));
+    let slump_is_shown = shown.any(|quantity| quantity.name == "slump");
+    let released = context.ensemble.released(&context.run.frame);
+    TimeStepFigure::new(released, ui.visuals().dark_mode).filter(|_| slump_is_shown)
+}
+
+/// The buttons that save or clear the figure, from the right.
+fn figure_buttons(ui: &mut Ui, context: &mut PanelContext<'_>, figure: &TimeStepFigure) {
+    let hint = "Forget the points, except those of the piles that are shown.";
+    let clear = ui.small_button("Clear").on_hover_text(hint);
+    context.note_control("clear figure", clear.rect);
+    if clear.clicked() {
+        context.ask(Request::ForgetReleased);
+    }
+    let stem = format!("{}-slump-over-dt", context.run.file_stem());
+    if ui.small_button("CSV").on_hover_text("Save the points as a table.").clicked() {
+        let (table, stem) = (figure.table(), stem.clone());
+        context.write(ui.ctx(), move |folder, _| {
+            let path = free_path(folder, &stem, "csv");
+            write_file(&path, table.as_bytes())?;
+            Ok(path)
+        });
+    }
+    if ui.small_button("PNG").on_hover_text("Save this plot as a picture.").clicked() {
+        let (size, dark) = (context.preferences.picture_size, ui.visuals().dark_mode);
+        let (figure, texts) = (figure.clone(), context.run.texts(false));
+        context.write(ui.ctx(), move |folder, printers| {
+            let path = free_path(folder, &stem, "png");
+            let print = |ui: &mut Ui| figure.draw(ui, |_| {});
+            write_png(&path, &printers.canvas()?.print(size, dark, print)?, &texts)?;
+            Ok(path)
+        });
+    }
+}
+
+fn curves(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let data = data(ui, context);
     if let Some(time_secs) = draw(ui, &data) {
         context
@@ -122,7 +177,8 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let stem = stem.clone();
         context.write(ui.ctx(), move |folder, printers| {
             let path = free_path(folder, &stem, "png");
-            write_png(&path, &printers.canvas()?.print(&data, size, dark)?, &texts)?;
+            let print = |ui: &mut Ui| draw_with_key(ui, &data);
+            write_png(&path, &printers.canvas()?.print(size, dark, print)?, &texts)?;
             Ok(path)
         });
     }

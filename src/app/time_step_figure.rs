@@ -1,0 +1,196 @@
+//! Fig. 5a by hand: mean slump against Δt, a point for each pile that was released.
+
+use egui::{Color32, Label, RichText, Ui};
+use egui_plot::{HoverPosition, Line, Points};
+
+use super::axes::{plot_with_axes, with_least, with_room};
+use super::ensemble::Released;
+use super::plots::{LEAST_SLUMP, colour_key};
+use super::theme;
+use super::titles::title_among;
+use crate::live::Controls;
+use crate::sim::Settings;
+
+/// What is written above the plot.
+const TITLE: &str = "mean slump of other piles against Δt";
+/// The time steps that the axis shows at least, ms.
+const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
+/// Half the width of the ends of an error bar, decades.
+const CAP: f64 = 0.03;
+
+/// Mean slump at the end of the scene.
+#[derive(Clone, Debug, PartialEq)]
+struct FigurePoint {
+    time_step_secs: f64,
+    mean: f64,
+    /// Half the width of the 95 % interval.
+    half: f64,
+    /// Number of piles.
+    count: usize,
+}
+
+impl FigurePoint {
+    /// Place along the axis of Δt: the logarithm of milliseconds.
+    fn decades(&self) -> f64 {
+        (1e3 * self.time_step_secs).log10()
+    }
+}
+
+/// Points whose settings differ in Δt only.
+#[derive(Clone, Debug)]
+struct FigureSeries {
+    name: String,
+    bond: f64,
+    colour: Color32,
+    points: Vec<FigurePoint>,
+}
+
+/// The figure.
+#[derive(Clone, Debug)]
+pub(super) struct TimeStepFigure(Vec<FigureSeries>);
+
+impl TimeStepFigure {
+    /// The figure of the piles that were released; nothing if no pile has an interval yet.
+    pub(super) fn new<'a>(
+        released: impl Iterator<Item = &'a Released>,
+        is_dark: bool,
+    ) -> Option<Self> {
+        let mut all: Vec<(Settings, Vec<FigurePoint>)> = Vec::new();
+        for (settings, band) in released {
+            let (Some(&mean), Some(&high)) = (band.means.last(), band.highs.last()) else {
+                continue;
+            };
+            if !high.is_finite() {
+                continue;
+            }
+            let time_step_secs = settings.parameters.time_step_secs;
+            let point = FigurePoint { time_step_secs, mean, half: high - mean, count: band.count };
+            let shared = settings.over(Settings::default().parameters.time_step_secs);
+            match all.iter_mut().find(|(own, _)| *own == shared) {
+                Some((_, points)) => points.push(point),
+                None => all.push((shared, vec![point])),
+            }
+        }
+        let controls: Vec<_> =
+            all.iter().map(|&(settings, _)| Controls { settings, pull: None }).collect();
+        let series = all.into_iter().enumerate().map(|(index, (settings, mut points))| {
+            points.sort_by(|one, other| one.time_step_secs.total_cmp(&other.time_step_secs));
+            let bond = settings.parameters.bond;
+            let name = if controls.len() > 1 {
+                title_among(&controls, index)
+            } else {
+                format!("Bond {bond}")
+            };
+            FigureSeries { name, bond, colour: theme::world_colour(index, is_dark), points }
+        });
+        let series: Vec<_> = series.collect();
+        (!series.is_empty()).then_some(Self(series))
+    }
+
+    /// Draws the figure into the space that is left; `head` adds to its title.
+    pub(super) fn draw(&self, ui: &mut Ui, head: impl FnOnce(&mut Ui)) {
+        ui.horizontal(|ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                head(ui);
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    colour_key(
+                        ui,
+                        self.0.iter().map(|series| (series.name.as_str(), series.colour)),
+                    );
+                    ui.add(Label::new(RichText::new(TITLE).small()).truncate());
+                });
+            });
+        });
+        let points = || self.0.iter().flat_map(|series| &series.points);
+        let along = points().map(FigurePoint::decades).chain(LEAST_MILLIS.map(f64::log10));
+        let ends = points().flat_map(|point| [point.mean - point.half, point.mean + point.half]);
+        let least = [with_room(along, true), with_room(ends.chain([0.0, LEAST_SLUMP]), false)];
+        let height = (ui.available_height() - 2.0).max(40.0);
+        let plot = plot_with_axes(ui, "slump against time step", height, [true, false], " ms");
+        with_least(plot, least).label_formatter(hover_text).show(ui, |plot| {
+            for FigureSeries { name, colour, points, .. } in &self.0 {
+                let line = |ends: Vec<[f64; 2]>| Line::new("", ends).allow_hover(false);
+                let means = points.iter().map(|point| [point.decades(), point.mean]).collect();
+                plot.line(line(means).color(colour.gamma_multiply(0.4)).width(1.0));
+                for point in points {
+                    let FigurePoint { mean, half, count, .. } = point;
+                    let (x, low, high) = (point.decades(), mean - half, mean + half);
+                    let cap = |y: f64| vec![[x - CAP, y], [x + CAP, y]];
+                    for ends in [vec![[x, low], [x, high]], cap(low), cap(high)] {
+                        plot.line(line(ends).color(*colour).width(1.4));
+                    }
+                    let step = millis_text(point.time_step_secs);
+                    let text =
+                        format!("{name}, Δt {step}\nslump {mean:.3} ± {half:.3}\n{count} piles");
+                    plot.points(Points::new(text, vec![[x, *mean]]).radius(3.5).color(*colour));
+                }
+            }
+        });
+    }
+
+    /// The points as a table.
+    pub(super) fn table(&self) -> String {
+        let mut text = "series,bond,time_step,slump,half_interval,piles\n".to_owned();
+        for FigureSeries { name, bond, points, .. } in &self.0 {
+            for FigurePoint { time_step_secs, mean, half, count } in points {
+                text += &format!("\"{name}\",{bond},{time_step_secs},{mean},{half},{count}\n");
+            }
+        }
+        text
+    }
+}
+
+/// The name of a point says all of it.
+fn hover_text(position: &HoverPosition<'_>) -> Option<String> {
+    match position {
+        HoverPosition::NearDataPoint { plot_name, .. } => Some((*plot_name).to_owned()),
+        HoverPosition::Elsewhere { .. } => None,
+    }
+}
+
+/// A time step in milliseconds, with up to four digits.
+pub(super) fn millis_text(secs: f64) -> String {
+    let millis = 1e3 * secs;
+    format!("{} ms", format!("{millis:.3e}").parse().unwrap_or(millis))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::app::ensemble::Band;
+
+    fn released(settings: Settings, mean: f64, half: f64) -> Released {
+        let band = Band {
+            means: vec![0.0, mean],
+            highs: vec![0.0, mean + half],
+            count: 8,
+            ..Band::default()
+        };
+        (settings, Arc::new(band))
+    }
+
+    #[test]
+    fn a_bond_is_a_series_in_the_order_of_time_steps() {
+        let base = Settings::default();
+        let all = [
+            released(base.with_bond(20.0).over(5e-3), 0.25, 0.0625),
+            released(base.with_bond(100.0).over(5e-3), 0.125, 0.03125),
+            released(base.with_bond(20.0).over(1e-4), 0.5, 0.125),
+            released(base.with_bond(20.0).over(1e-3), 0.375, f64::INFINITY),
+        ];
+        let figure = TimeStepFigure::new(all.iter(), false).unwrap();
+        let names: Vec<_> = figure.0.iter().map(|series| series.name.as_str()).collect();
+        assert_eq!(names, ["Bond 20", "Bond 100"]);
+        assert_ne!(figure.0[0].colour, figure.0[1].colour);
+        let expected = "series,bond,time_step,slump,half_interval,piles\n\
+                        \"Bond 20\",20,0.0001,0.5,0.125,8\n\
+                        \"Bond 20\",20,0.005,0.25,0.0625,8\n\
+                        \"Bond 100\",100,0.005,0.125,0.03125,8\n";
+        assert_eq!(figure.table(), expected, "one pile has no interval and no point");
+        let alone = TimeStepFigure::new(all[..1].iter(), false).unwrap();
+        assert_eq!(alone.0[0].name, "Bond 20");
+        assert!(TimeStepFigure::new(all[3..].iter(), false).is_none());
+    }
+}
