@@ -112,8 +112,8 @@ pub const LESSONS: [Lesson; 7] = [
     },
     Lesson {
         title: "A bond made is a bond",
-        watch: "This pile is stepped by 5 ms. Release it. When it stands, drag Δt to 0.1 ms: nothing happens, for bonds \
-                that hold stay as they are. Tick the box below, and drag again: from the start, Δt matters.",
+        watch: "This pile is stepped by 5 ms. Release it. When it stands, drag Δt to 0.1 ms: time goes on, and the pile \
+                stays as it is, because its bonds hold. Then tick the box below and drag Δt a little: from the start, it slumps.",
         worlds: |base| vec![base.with_bond(20.0).over(LONG_STEP_SECS)],
         starts_again: false,
         leaves_free: |name| name == "dt",
@@ -121,9 +121,9 @@ pub const LESSONS: [Lesson; 7] = [
             let parameters = run.world().map(|world| world.controls.settings.parameters);
             let is_long = parameters.is_some_and(|it| it.time_step_secs == LONG_STEP_SECS);
             match (run.frame.playing, is_long) {
-                (true, _) => &[],
                 _ if waits_at_start(run) => &["release"],
-                (_, true) => &["Δt"],
+                (true, true) => &[],
+                (false, true) => &["Δt"],
                 _ if !preferences.starts_again => &["start again"],
                 _ => &[],
             }

@@ -268,7 +268,11 @@ fn the_lesson_on_bonds_asks_for_one_thing_after_the_other() {
     robot.take_steps(3);
     asks_in_view(&robot, "Δt");
     robot.type_number("Δt, time step", "1e-4");
+    robot.until("time to go on", |state| state.run.frame.time_secs() > 0.016);
     asks_in_view(&robot, "start again");
     robot.click("start again when I move a slider");
     assert!(asked(&robot).is_empty());
+    robot.type_number("Δt, time step", "2e-4");
+    let row = robot.observables();
+    assert_eq!(row.time_secs, row.step as f64 * row.time_step_secs, "from the start");
 }

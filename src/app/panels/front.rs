@@ -157,7 +157,13 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     match settings != before {
         true if context.preferences.starts_again => context.run.draft = Some((index, settings)),
-        true => context.run.change(index, settings),
+        true => {
+            context.run.change(index, settings);
+            // In a lesson the effect of a change on a pile at rest is to be seen.
+            if context.touring && !context.run.frame.at_start() {
+                context.run.live.send(Command::Play);
+            }
+        }
         false => {}
     }
     if !ui.input(|input| input.pointer.any_down()) {
