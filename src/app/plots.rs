@@ -32,8 +32,8 @@ const BESIDE: [LineStyle; 2] =
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
     pub worlds: Vec<WorldCurve>,
-    /// Rows of the run before, behind the others.
-    pub ghosts: Vec<Curve>,
+    /// The worlds of the run before, behind the others.
+    pub ghosts: Vec<WorldCurve>,
     pub quantities: Vec<&'static Quantity<Observables>>,
     pub chosen: ChosenPlot,
     /// The moment that is shown, s.
@@ -45,18 +45,14 @@ pub(crate) struct PlotData {
 /// Draws plots for a picture, below the names of their colours where there is more than one.
 pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     if data.worlds.len() > 1 {
-        let entries = data.worlds.iter().map(|world| (world.name.as_str(), world.colour));
-        ui.horizontal_wrapped(|ui| colour_key(ui, entries));
+        ui.horizontal_wrapped(|ui| {
+            for WorldCurve { name, colour, .. } in &data.worlds {
+                ui.label(RichText::new("■").color(*colour));
+                ui.label(name);
+            }
+        });
     }
     draw(ui, data);
-}
-
-/// What the colours of lines mean.
-pub(super) fn colour_key<'a>(ui: &mut Ui, entries: impl Iterator<Item = (&'a str, Color32)>) {
-    for (name, colour) in entries {
-        ui.label(RichText::new("■").color(colour));
-        ui.label(name);
-    }
 }
 
 /// Draws the plots into the space that is left. Returns the time that was clicked, s.
@@ -116,13 +112,13 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
-                let values =
-                    points(ghost, until_secs, |row| scaled((quantity.value)(row)) / factor);
-                let grey = Color32::from_gray(128).gamma_multiply(0.6);
-                plot.line(Line::new("the run before", values).color(grey).width(1.2));
+                let value = |row: &Observables| scaled((quantity.value)(row)) / factor;
+                let values = points(&ghost.curve, until_secs, value);
+                plot.line(Line::new(ghost.name.clone(), values).color(ghost.colour).width(1.2));
             }
             if quantity.name == OTHERS {
-                let lines = data.worlds.iter().flat_map(|world| others(world, data.now_secs));
+                let worlds = data.ghosts.iter().chain(&data.worlds);
+                let lines = worlds.flat_map(|world| others(world, data.now_secs));
                 lines.for_each(|line| plot.line(line));
             }
             for WorldCurve { name, colour, curve, .. } in &data.worlds {
@@ -199,8 +195,8 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
             let others = others.clone().filter_map(|(_, value)| value(row));
             others.fold((quantity.value)(row), f64::max)
         };
-        let curves = data.worlds.iter().map(|world| &world.curve).chain(&data.ghosts);
-        let rows = curves.flat_map(Curve::rows);
+        let worlds = data.worlds.iter().chain(&data.ghosts);
+        let rows = worlds.flat_map(|world| world.curve.rows());
         let prefix;
         (prefix, factor) = si_prefix(rows.map(largest).fold(0.0, f64::max));
         title = format!("{title} ({prefix}{})", quantity.unit);
@@ -394,7 +390,7 @@ mod tests {
         WorldCurve { name: String::new(), colour: Color32::RED, curve, others: None }
     }
 
-    fn plots_of(world: WorldCurve, ghosts: Vec<Curve>) -> PlotData {
+    fn plots_of(world: WorldCurve, ghosts: Vec<WorldCurve>) -> PlotData {
         PlotData {
             worlds: vec![world],
             ghosts,
@@ -407,10 +403,10 @@ mod tests {
 
     #[test]
     fn a_ghost_of_a_long_run_does_not_stretch_the_axis_of_a_short_one() {
-        let data = plots_of(world(curve_until(1.5)), vec![curve_until(9.0)]);
+        let data = plots_of(world(curve_until(1.5)), vec![world(curve_until(9.0))]);
         assert_eq!(end_secs(&data), 1.5, "its own end alone counts");
         assert_eq!(end_secs(&PlotData { worlds: Vec::new(), ..data.clone() }), 1.0);
-        let shown = |until_secs| points(&data.ghosts[0], until_secs, |_| 1.0).points().len();
+        let shown = |until_secs| points(&data.ghosts[0].curve, until_secs, |_| 1.0).points().len();
         assert_eq!([shown(1.5), shown(4.5), shown(9.0)], [1, 2, 3], "and nothing beyond is drawn");
     }
 
