@@ -7,6 +7,7 @@ use egui_plot::{HoverPosition, Line, LineStyle, MarkerShape, PlotPoints, Points,
 use serde::{Deserialize, Serialize};
 
 use super::axes::{plot_with_axes, with_least, with_room};
+use super::curve_pieces::pieces;
 use super::ensemble::Band;
 use crate::data::Observed;
 use crate::live::Curve;
@@ -21,8 +22,6 @@ pub(super) const LEAST_SLUMP: f64 = 0.4;
 const OTHERS: &str = "slump";
 /// How strong the colour of single other piles is.
 const OTHERS_STRENGTH: f32 = 0.45;
-/// Intervals of time for which a long curve shows its least and its largest value.
-const BUCKETS: usize = 300;
 
 /// How what is shown beside a quantity is drawn.
 const BESIDE: [LineStyle; 2] =
@@ -113,8 +112,9 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
             let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
                 let value = |row: &Observables| scaled((quantity.value)(row)) / factor;
-                let values = points(&ghost.curve, until_secs, value);
-                plot.line(Line::new(ghost.name.clone(), values).color(ghost.colour).width(1.2));
+                for piece in pieces(&ghost.curve, until_secs, value) {
+                    plot.line(Line::new(ghost.name.clone(), piece).color(ghost.colour).width(1.2));
+                }
             }
             if quantity.name == OTHERS {
                 let worlds = data.ghosts.iter().chain(&data.worlds);
@@ -122,15 +122,21 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
                 lines.for_each(|line| plot.line(line));
             }
             for WorldCurve { name, colour, curve, .. } in &data.worlds {
-                let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
-                    let points = points(curve, f64::INFINITY, |row| value(row) / factor);
-                    Line::new(name, points).color(*colour)
+                let lines = |name: String, value: &dyn Fn(&Observables) -> f64| {
+                    let pieces = pieces(curve, f64::INFINITY, |row| value(row) / factor);
+                    pieces
+                        .into_iter()
+                        .map(move |piece| Line::new(name.clone(), piece).color(*colour))
                 };
                 let value = |row: &Observables| scaled((quantity.value)(row));
-                plot.line(line(name.clone(), &value).width(1.6));
+                for line in lines(name.clone(), &value) {
+                    plot.line(line.width(1.6));
+                }
                 for ((what, value), style) in beside(curve, quantity).zip(BESIDE) {
                     let value = |row: &Observables| scaled(value(row).unwrap_or(f64::NAN));
-                    plot.line(line(format!("{name}: {what}"), &value).style(style).width(1.2));
+                    for line in lines(format!("{name}: {what}"), &value) {
+                        plot.line(line.style(style).width(1.2));
+                    }
                 }
             }
             plot.pointer_coordinate()
@@ -223,30 +229,6 @@ fn scaled(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
 
-/// The curve up to a time, or, of a long one, the least and the largest value of every interval.
-fn points(
-    curve: &Curve,
-    until_secs: f64,
-    value: impl Fn(&Observables) -> f64,
-) -> PlotPoints<'static> {
-    let rows = curve.rows().take_while(|row| row.time_secs <= until_secs);
-    let points = rows.map(|row| [row.time_secs, value(row)]);
-    // A state that no step has led to has no residual, and its logarithm is no number.
-    let is_finite = |point: &[f64; 2]| point.iter().all(|number| number.is_finite());
-    let points: Vec<[f64; 2]> = points.filter(is_finite).collect();
-    if curve.len() <= 2 * BUCKETS {
-        return points.into();
-    }
-    let extremes = points.chunks(curve.len().div_ceil(BUCKETS)).flat_map(|bucket| {
-        let by_value = |one: &&[f64; 2], other: &&[f64; 2]| one[1].total_cmp(&other[1]);
-        let ends = [bucket.iter().min_by(by_value), bucket.iter().max_by(by_value)];
-        let mut ends = ends.map(|end| *end.unwrap_or(&bucket[0]));
-        ends.sort_by(|one, other| one[0].total_cmp(&other[0]));
-        ends
-    });
-    extremes.collect()
-}
-
 /// What is plotted of a world.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldCurve {
@@ -328,11 +310,12 @@ impl ChosenPlot {
         ui.add(Label::new(title).truncate());
         let id = ("chosen", &self.axes, self.logarithmic);
         let height = (ui.available_height() - 2.0).max(40.0);
-        let stride = |curve: &Curve| curve.len().div_ceil(MOST_POINTS).max(1);
-        let of_worlds: Vec<_> = worlds
-            .iter()
-            .map(|world| self.points(world.curve.rows().step_by(stride(&world.curve))))
-            .collect();
+        let thinned = |world: &WorldCurve| {
+            let mut curve = world.curve.clone();
+            curve.thin_to(MOST_POINTS);
+            self.points(curve.rows())
+        };
+        let of_worlds: Vec<_> = worlds.iter().map(thinned).collect();
         let ends = [0, 1].map(|axis| {
             let values = of_worlds.iter().flatten().map(|place| place[axis]);
             with_room(values, self.logarithmic[axis])
@@ -406,7 +389,7 @@ mod tests {
         let data = plots_of(world(curve_until(1.5)), vec![world(curve_until(9.0))]);
         assert_eq!(end_secs(&data), 1.5, "its own end alone counts");
         assert_eq!(end_secs(&PlotData { worlds: Vec::new(), ..data.clone() }), 1.0);
-        let shown = |until_secs| points(&data.ghosts[0].curve, until_secs, |_| 1.0).points().len();
+        let shown = |until_secs| pieces(&data.ghosts[0].curve, until_secs, |_| 1.0)[0].len();
         assert_eq!([shown(1.5), shown(4.5), shown(9.0)], [1, 2, 3], "and nothing beyond is drawn");
     }
 

@@ -10,7 +10,7 @@ use crate::app::plots::{LEAST_WIDTH, PlotData, WorldCurve, draw, draw_with_key};
 use crate::app::preferences::Preferences;
 use crate::app::theme;
 use crate::app::time_step_figure::TimeStepFigure;
-use crate::app::titles::title_against;
+use crate::app::titles::{millis_text, title_against};
 use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
 use crate::output::write_file;
@@ -218,8 +218,10 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
             Ok(path)
         });
     }
-    let strides = context.run.frame.worlds.iter().map(|world| world.curve.stride());
-    if let Some(stride) = strides.max().filter(|&stride| stride > 1) {
-        ui.label(RichText::new(format!("plotted: one step in {stride}")).small().weak());
+    let worlds = context.run.frame.worlds.iter();
+    let spacing_secs = worlds.map(|world| world.curve.least_spacing_secs()).fold(0.0, f64::max);
+    if spacing_secs > 0.0 {
+        let text = format!("plotted: a step every {}", millis_text(spacing_secs));
+        ui.label(RichText::new(text).small().weak());
     }
 }
