@@ -33,7 +33,7 @@ pub struct Lesson {
     pub plots: &'static [&'static str],
     /// The page that is opened for it.
     pub page: Option<Page>,
-    /// True where a slider starts the run again.
+    /// True if a slider starts the run again.
     pub starts_again: bool,
     /// True of settings whose change its sentences ask for, or leave true.
     pub leaves_free: fn(&str) -> bool,

@@ -14,6 +14,7 @@ mod budget;
 mod camera;
 mod canvas;
 mod context;
+mod curve_pieces;
 mod data_export;
 mod ensemble;
 mod exports;

@@ -7,6 +7,7 @@ use egui_plot::{HoverPosition, Line, LineStyle, MarkerShape, PlotPoints, Points,
 use serde::{Deserialize, Serialize};
 
 use super::axes::{plot_with_axes, with_least, with_room};
+use super::curve_pieces::pieces;
 use super::ensemble::Band;
 use crate::data::Observed;
 use crate::live::Curve;
@@ -17,12 +18,10 @@ use crate::sim::{Beside, Observables, Quantity};
 pub(super) const LEAST_WIDTH: f32 = 150.0;
 /// What an axis of slump shows at least: runs are compared by eye.
 pub(super) const LEAST_SLUMP: f64 = 0.4;
-/// The quantity that other piles are told of.
+/// The quantity that is known of other piles.
 const OTHERS: &str = "slump";
 /// How strong the colour of single other piles is.
 const OTHERS_STRENGTH: f32 = 0.45;
-/// Intervals of time for which a long curve shows its least and its largest value.
-const BUCKETS: usize = 300;
 
 /// How what is shown beside a quantity is drawn.
 const BESIDE: [LineStyle; 2] =
@@ -32,8 +31,8 @@ const BESIDE: [LineStyle; 2] =
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
     pub worlds: Vec<WorldCurve>,
-    /// Rows of the run before, behind the others.
-    pub ghosts: Vec<Curve>,
+    /// The worlds of the run before, behind the others.
+    pub ghosts: Vec<WorldCurve>,
     pub quantities: Vec<&'static Quantity<Observables>>,
     pub chosen: ChosenPlot,
     /// The moment that is shown, s.
@@ -45,18 +44,14 @@ pub(crate) struct PlotData {
 /// Draws plots for a picture, below the names of their colours where there is more than one.
 pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     if data.worlds.len() > 1 {
-        let entries = data.worlds.iter().map(|world| (world.name.as_str(), world.colour));
-        ui.horizontal_wrapped(|ui| colour_key(ui, entries));
+        ui.horizontal_wrapped(|ui| {
+            for WorldCurve { name, colour, .. } in &data.worlds {
+                ui.label(RichText::new("■").color(*colour));
+                ui.label(name);
+            }
+        });
     }
     draw(ui, data);
-}
-
-/// What the colours of lines mean.
-pub(super) fn colour_key<'a>(ui: &mut Ui, entries: impl Iterator<Item = (&'a str, Color32)>) {
-    for (name, colour) in entries {
-        ui.label(RichText::new("■").color(colour));
-        ui.label(name);
-    }
 }
 
 /// Draws the plots into the space that is left. Returns the time that was clicked, s.
@@ -116,25 +111,32 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
-                let values =
-                    points(ghost, until_secs, |row| scaled((quantity.value)(row)) / factor);
-                let grey = Color32::from_gray(128).gamma_multiply(0.6);
-                plot.line(Line::new("the run before", values).color(grey).width(1.2));
+                let value = |row: &Observables| scaled((quantity.value)(row)) / factor;
+                for piece in pieces(&ghost.curve, until_secs, value) {
+                    plot.line(Line::new(ghost.name.clone(), piece).color(ghost.colour).width(1.2));
+                }
             }
             if quantity.name == OTHERS {
-                let lines = data.worlds.iter().flat_map(|world| others(world, data.now_secs));
+                let worlds = data.ghosts.iter().chain(&data.worlds);
+                let lines = worlds.flat_map(|world| others(world, data.now_secs));
                 lines.for_each(|line| plot.line(line));
             }
             for WorldCurve { name, colour, curve, .. } in &data.worlds {
-                let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
-                    let points = points(curve, f64::INFINITY, |row| value(row) / factor);
-                    Line::new(name, points).color(*colour)
+                let lines = |name: String, value: &dyn Fn(&Observables) -> f64| {
+                    let pieces = pieces(curve, f64::INFINITY, |row| value(row) / factor);
+                    pieces
+                        .into_iter()
+                        .map(move |piece| Line::new(name.clone(), piece).color(*colour))
                 };
                 let value = |row: &Observables| scaled((quantity.value)(row));
-                plot.line(line(name.clone(), &value).width(1.6));
+                for line in lines(name.clone(), &value) {
+                    plot.line(line.width(1.6));
+                }
                 for ((what, value), style) in beside(curve, quantity).zip(BESIDE) {
                     let value = |row: &Observables| scaled(value(row).unwrap_or(f64::NAN));
-                    plot.line(line(format!("{name}: {what}"), &value).style(style).width(1.2));
+                    for line in lines(format!("{name}: {what}"), &value) {
+                        plot.line(line.style(style).width(1.2));
+                    }
                 }
             }
             plot.pointer_coordinate()
@@ -148,7 +150,7 @@ fn end_secs(data: &PlotData) -> f64 {
     ends.map(|row| row.time_secs).fold(data.until_secs, f64::max)
 }
 
-/// What is known of others at the moment that is shown: before a pile is released, nothing is told of how it ends.
+/// The quantity of other piles at the moment on screen; before a pile is released, nothing reveals its end.
 fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
     points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
 }
@@ -199,8 +201,8 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
             let others = others.clone().filter_map(|(_, value)| value(row));
             others.fold((quantity.value)(row), f64::max)
         };
-        let curves = data.worlds.iter().map(|world| &world.curve).chain(&data.ghosts);
-        let rows = curves.flat_map(Curve::rows);
+        let worlds = data.worlds.iter().chain(&data.ghosts);
+        let rows = worlds.flat_map(|world| world.curve.rows());
         let prefix;
         (prefix, factor) = si_prefix(rows.map(largest).fold(0.0, f64::max));
         title = format!("{title} ({prefix}{})", quantity.unit);
@@ -227,30 +229,6 @@ fn scaled(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
 
-/// The curve up to a time, or, of a long one, the least and the largest value of every interval.
-fn points(
-    curve: &Curve,
-    until_secs: f64,
-    value: impl Fn(&Observables) -> f64,
-) -> PlotPoints<'static> {
-    let rows = curve.rows().take_while(|row| row.time_secs <= until_secs);
-    let points = rows.map(|row| [row.time_secs, value(row)]);
-    // A state that no step has led to has no residual, and its logarithm is no number.
-    let is_finite = |point: &[f64; 2]| point.iter().all(|number| number.is_finite());
-    let points: Vec<[f64; 2]> = points.filter(is_finite).collect();
-    if curve.len() <= 2 * BUCKETS {
-        return points.into();
-    }
-    let extremes = points.chunks(curve.len().div_ceil(BUCKETS)).flat_map(|bucket| {
-        let by_value = |one: &&[f64; 2], other: &&[f64; 2]| one[1].total_cmp(&other[1]);
-        let ends = [bucket.iter().min_by(by_value), bucket.iter().max_by(by_value)];
-        let mut ends = ends.map(|end| *end.unwrap_or(&bucket[0]));
-        ends.sort_by(|one, other| one[0].total_cmp(&other[0]));
-        ends
-    });
-    extremes.collect()
-}
-
 /// What is plotted of a world.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldCurve {
@@ -273,7 +251,7 @@ pub struct ChosenPlot {
     pub on: bool,
     /// Names of the quantities along the axes, as tables call them: x and y.
     pub axes: [String; 2],
-    /// True where equal distances along an axis are equal factors.
+    /// True if equal distances along an axis are equal factors.
     pub logarithmic: [bool; 2],
 }
 
@@ -332,11 +310,12 @@ impl ChosenPlot {
         ui.add(Label::new(title).truncate());
         let id = ("chosen", &self.axes, self.logarithmic);
         let height = (ui.available_height() - 2.0).max(40.0);
-        let stride = |curve: &Curve| curve.len().div_ceil(MOST_POINTS).max(1);
-        let of_worlds: Vec<_> = worlds
-            .iter()
-            .map(|world| self.points(world.curve.rows().step_by(stride(&world.curve))))
-            .collect();
+        let thinned = |world: &WorldCurve| {
+            let mut curve = world.curve.clone();
+            curve.thin_to(MOST_POINTS);
+            self.points(curve.rows())
+        };
+        let of_worlds: Vec<_> = worlds.iter().map(thinned).collect();
         let ends = [0, 1].map(|axis| {
             let values = of_worlds.iter().flatten().map(|place| place[axis]);
             with_room(values, self.logarithmic[axis])
@@ -394,7 +373,7 @@ mod tests {
         WorldCurve { name: String::new(), colour: Color32::RED, curve, others: None }
     }
 
-    fn plots_of(world: WorldCurve, ghosts: Vec<Curve>) -> PlotData {
+    fn plots_of(world: WorldCurve, ghosts: Vec<WorldCurve>) -> PlotData {
         PlotData {
             worlds: vec![world],
             ghosts,
@@ -407,10 +386,10 @@ mod tests {
 
     #[test]
     fn a_ghost_of_a_long_run_does_not_stretch_the_axis_of_a_short_one() {
-        let data = plots_of(world(curve_until(1.5)), vec![curve_until(9.0)]);
+        let data = plots_of(world(curve_until(1.5)), vec![world(curve_until(9.0))]);
         assert_eq!(end_secs(&data), 1.5, "its own end alone counts");
         assert_eq!(end_secs(&PlotData { worlds: Vec::new(), ..data.clone() }), 1.0);
-        let shown = |until_secs| points(&data.ghosts[0], until_secs, |_| 1.0).points().len();
+        let shown = |until_secs| pieces(&data.ghosts[0].curve, until_secs, |_| 1.0)[0].len();
         assert_eq!([shown(1.5), shown(4.5), shown(9.0)], [1, 2, 3], "and nothing beyond is drawn");
     }
 

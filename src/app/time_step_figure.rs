@@ -5,14 +5,17 @@ use egui_plot::{HoverPosition, Line, Points};
 
 use super::axes::{plot_with_axes, with_least, with_room};
 use super::ensemble::Released;
-use super::plots::{LEAST_SLUMP, colour_key};
+use super::plots::LEAST_SLUMP;
 use super::theme;
-use super::titles::title_among;
+use super::titles::{millis_text, title_among};
 use crate::live::Controls;
 use crate::sim::Settings;
 
 /// What is written above the plot.
-const TITLE: &str = "mean slump of other piles against Δt";
+const TITLE: &str = "slump against Δt";
+/// What a point is.
+const HINT: &str = "A point for each pile that was released: the mean slump of its other piles at the end of the scene, with \
+                    its 95 % interval.";
 /// The time steps that the axis shows at least, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
 /// Half the width of the ends of an error bar, decades.
@@ -93,11 +96,11 @@ impl TimeStepFigure {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 head(ui);
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    colour_key(
-                        ui,
-                        self.0.iter().map(|series| (series.name.as_str(), series.colour)),
-                    );
-                    ui.add(Label::new(RichText::new(TITLE).small()).truncate());
+                    ui.label(RichText::new(TITLE).small()).on_hover_text(HINT);
+                    for series in &self.0 {
+                        ui.label(RichText::new("■").small().color(series.colour));
+                        ui.add(Label::new(RichText::new(&series.name).small()).truncate());
+                    }
                 });
             });
         });
@@ -146,12 +149,6 @@ fn hover_text(position: &HoverPosition<'_>) -> Option<String> {
         HoverPosition::NearDataPoint { plot_name, .. } => Some((*plot_name).to_owned()),
         HoverPosition::Elsewhere { .. } => None,
     }
-}
-
-/// A time step in milliseconds, with up to four digits.
-pub(super) fn millis_text(secs: f64) -> String {
-    let millis = 1e3 * secs;
-    format!("{} ms", format!("{millis:.3e}").parse().unwrap_or(millis))
 }
 
 #[cfg(test)]

@@ -53,6 +53,29 @@ pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> Stri
     format!("{number}{text}, t = {time_secs:.4} s")
 }
 
+/// The settings of a run in which it differs from another.
+pub(super) fn title_against(one: &Settings, other: &Settings) -> String {
+    let secs = one.parameters.time_step_secs;
+    if one != other && one.over(other.parameters.time_step_secs) == *other {
+        return format!("Δt {}", millis_text(secs));
+    }
+    title_among(&[one, other].map(|&settings| Controls { settings, pull: None }), 0)
+}
+
+/// A change of settings: "Bond 20 → 50".
+pub(super) fn change_text(before: &Settings, after: &Settings) -> String {
+    let (from, to) = (title_against(before, after), title_against(after, before));
+    let symbol = from.split_inclusive(' ').next().unwrap_or_default();
+    let is_one = !from.contains(", ") && symbol.ends_with(' ');
+    format!("{from} → {}", to.strip_prefix(symbol).filter(|_| is_one).unwrap_or(&to))
+}
+
+/// A time step in milliseconds, with up to four digits.
+pub(super) fn millis_text(secs: f64) -> String {
+    let millis = 1e3 * secs;
+    format!("{} ms", format!("{millis:.3e}").parse().unwrap_or(millis))
+}
+
 /// A setting in a title.
 fn said(settings: &Settings, name: &str) -> Option<String> {
     let about = Settings::about().find(|about| about.name == name)?;
@@ -88,5 +111,16 @@ mod tests {
             of(&[base, base.over(5e-3)]),
             ["1: Δt 1e-3 s, Bond 20, t = 0.2500 s", "2: Δt 5e-3 s, Bond 20, t = 0.2500 s"]
         );
+    }
+
+    #[test]
+    fn a_change_says_what_it_changes_once() {
+        let base = Settings::default().with_bond(20.0).over(1e-3);
+        assert_eq!(change_text(&base, &base.over(3e-4)), "Δt 1 ms → 0.3 ms");
+        assert_eq!(change_text(&base, &base.with_bond(50.0)), "Bond 20 → 50");
+        let both = change_text(&base, &base.with_bond(50.0).over(1e-4));
+        assert_eq!(both, "Bond 20, Δt 1e-3 s → Bond 50, Δt 1e-4 s");
+        let range = Settings { stepper: crate::sim::Stepper::Range, ..base };
+        assert_eq!(change_text(&base, &range), "moreau → range");
     }
 }

@@ -8,25 +8,23 @@ use crate::sim::Observables;
 
 /// Rows of a chunk, which is shared and never changes.
 const CHUNK: usize = 256;
-/// Largest number of rows. A longer curve drops every second row. 32,768 rows are 6 MB.
+/// Where a curve becomes longer, rows are thinned by simulated time. 32,768 rows are 6 MB.
 const MOST_ROWS: usize = 32_768;
 
-/// Observables in order of time: of every step, or of every n-th step in a long run.
+/// Observables in the order of time: every step's, or in a long run rows with a least distance in simulated time. The first
+/// row and the newest are always among them.
 ///
 /// A clone shares all full chunks and copies fewer than 256 rows.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Curve {
     chunks: Vec<Arc<Vec<Observables>>>,
     tail: Vec<Observables>,
-    stride: u64,
+    least_spacing_secs: f64,
 }
 
-impl Default for Curve {
-    fn default() -> Self {
-        Self { chunks: Vec::new(), tail: Vec::new(), stride: 1 }
-    }
-}
+/// Part of a spacing by which times may fall short of it because of rounding.
+const ROUNDING: f64 = 1e-6;
 
 impl Curve {
     /// Number of rows.
@@ -39,9 +37,9 @@ impl Curve {
         self.len() == 0
     }
 
-    /// Only steps whose number is a multiple of the stride are kept.
-    pub fn stride(&self) -> u64 {
-        self.stride
+    /// Least distance of rows, s; 0 if every step has a row.
+    pub fn least_spacing_secs(&self) -> f64 {
+        self.least_spacing_secs
     }
 
     /// The rows, first to last.
@@ -54,38 +52,48 @@ impl Curve {
     }
 
     pub(crate) fn push(&mut self, row: Observables) {
-        if !row.step.is_multiple_of(self.stride) {
-            return;
+        // The newest row, which is never in a shared chunk, gives way where it is too near the row before.
+        let of_chunk = self.chunks.last().and_then(|chunk| chunk.last()).map(|row| row.time_secs);
+        let of_tail = self.tail.iter().rev().nth(1).map(|row| row.time_secs);
+        let least_secs = (1.0 - ROUNDING) * self.least_spacing_secs;
+        match (of_tail.or(of_chunk), self.tail.last_mut()) {
+            (Some(before), Some(last)) if last.time_secs - before < least_secs => *last = row,
+            _ => self.tail.push(row),
         }
-        self.tail.push(row);
-        if self.tail.len() == CHUNK {
-            self.chunks.push(Arc::new(std::mem::take(&mut self.tail)));
+        if self.tail.len() > CHUNK {
+            self.chunks.push(Arc::new(self.tail.drain(..CHUNK).collect()));
         }
         self.thin_to(MOST_ROWS);
     }
 
-    /// Drops every second row until at most `most_rows` remain.
-    pub(super) fn thin_to(&mut self, most_rows: usize) {
-        while self.len() > most_rows.max(1) {
-            self.stride *= 2;
-            let stride = self.stride;
-            self.keep(|row| row.step.is_multiple_of(stride));
+    /// Drops rows near others until there are no more than that.
+    pub(crate) fn thin_to(&mut self, most_rows: usize) {
+        while self.len() > most_rows.max(2) {
+            let rows: Vec<_> = self.rows().copied().collect();
+            let (first, last) = (rows[0].time_secs, rows[rows.len() - 1].time_secs);
+            let mean_spacing = (last - first) / (rows.len() - 1) as f64;
+            let spacing = (2.0 * self.least_spacing_secs).max(2.0 * mean_spacing);
+            let mut thinned = vec![rows[0]];
+            for row in &rows[1..] {
+                let kept = thinned[thinned.len() - 1].time_secs;
+                if row.time_secs - kept >= (1.0 - ROUNDING) * spacing || row.time_secs == last {
+                    thinned.push(*row);
+                }
+            }
+            self.least_spacing_secs = spacing;
+            self.set(thinned);
         }
     }
 
     /// Removes all steps after `step`.
     pub(crate) fn truncate(&mut self, step: u64) {
         if self.last().is_some_and(|row| row.step > step) {
-            self.keep(|row| row.step <= step);
+            self.set(self.rows().filter(|row| row.step <= step).copied().collect());
         }
     }
 
-    fn keep(&mut self, kept: impl Fn(&Observables) -> bool) {
-        self.set(self.rows().filter(|row| kept(row)).copied().collect());
-    }
-
     fn set(&mut self, rows: Vec<Observables>) {
-        let full = rows.len() / CHUNK * CHUNK;
+        let full = rows.len().saturating_sub(1) / CHUNK * CHUNK;
         self.chunks = rows[..full].chunks(CHUNK).map(|rows| Arc::new(rows.to_vec())).collect();
         self.tail = rows[full..].to_vec();
     }
@@ -97,7 +105,7 @@ pub(super) struct CurveChange {
     /// Number of first rows that both curves share.
     kept: usize,
     rows: Vec<Observables>,
-    stride: u64,
+    least_spacing_secs: f64,
 }
 
 impl CurveChange {
@@ -107,17 +115,19 @@ impl CurveChange {
         let rest = before.rows().skip(chunks * CHUNK).zip(curve.rows().skip(chunks * CHUNK));
         let kept = chunks * CHUNK + rest.take_while(|(old, new)| old == new).count();
         let rows = curve.rows().skip(kept).copied().collect();
-        Self { kept, rows, stride: curve.stride }
+        Self { kept, rows, least_spacing_secs: curve.least_spacing_secs }
     }
 
     pub(super) fn after(self, mut before: Curve) -> Curve {
-        let Self { kept, rows, stride } = self;
-        if before.len() == kept && before.tail.len() + rows.len() < CHUNK {
+        let Self { kept, rows, least_spacing_secs } = self;
+        let of_tail = kept.checked_sub(before.chunks.len() * CHUNK);
+        if let Some(of_tail) = of_tail.filter(|of_tail| of_tail + rows.len() <= CHUNK) {
+            before.tail.truncate(of_tail);
             before.tail.extend(rows);
         } else {
             before.set(before.rows().take(kept).copied().chain(rows).collect());
         }
-        Curve { stride, ..before }
+        Curve { least_spacing_secs, ..before }
     }
 }
 
@@ -127,20 +137,55 @@ mod tests {
 
     fn curve(steps: u64) -> Curve {
         let mut curve = Curve::default();
-        for step in 0..=steps {
-            curve.push(Observables { step, ..Observables::default() });
-        }
+        (0..=steps).for_each(|step| curve.push(row(step, 1e-3 * step as f64)));
         curve
+    }
+
+    fn row(step: u64, time_secs: f64) -> Observables {
+        Observables { step, time_secs, ..Observables::default() }
+    }
+
+    #[test]
+    fn a_curve_keeps_its_beginning_though_later_steps_are_far_shorter() {
+        let mut curve = Curve::default();
+        (0..=200).for_each(|step| curve.push(row(step, 5e-3 * step as f64)));
+        let short = 2 * MOST_ROWS as u64;
+        (1..=short).for_each(|step| curve.push(row(200 + step, 1.0 + 1e-4 * step as f64)));
+        let mut handed_out = curve.clone();
+        handed_out.thin_to(512);
+        for (curve, least) in [(curve, 201), (handed_out, 50)] {
+            let early = curve.rows().filter(|row| row.step <= 200).count();
+            assert!(early >= least, "{early} of {} rows", curve.len());
+            let ends = [curve.rows().next(), curve.last()].map(|row| row.map(|row| row.step));
+            assert_eq!(ends, [Some(0), Some(200 + short)]);
+        }
+    }
+
+    #[test]
+    fn what_is_sent_of_a_thinned_curve_makes_the_same_curve() {
+        let mut curve = curve(MOST_ROWS as u64 + 100);
+        let mut remote = curve.clone();
+        for step in 1..=700 {
+            let before = curve.clone();
+            curve.push(row(
+                MOST_ROWS as u64 + 100 + step,
+                1e-3 * (MOST_ROWS as u64 + 100 + step) as f64,
+            ));
+            remote = CurveChange::between(&before, &curve).after(remote);
+        }
+        assert!(
+            curve.rows().eq(remote.rows()) && curve.least_spacing_secs == remote.least_spacing_secs
+        );
     }
 
     #[test]
     fn a_long_curve_keeps_its_ends_and_its_order() {
         let curve = curve(3 * MOST_ROWS as u64);
         assert!(curve.len() <= MOST_ROWS && curve.len() > MOST_ROWS / 2);
-        assert_eq!(curve.stride(), 4);
         let steps: Vec<u64> = curve.rows().map(|row| row.step).collect();
-        assert!(steps.windows(2).all(|pair| pair[1] == pair[0] + 4));
-        assert_eq!(steps[0], 0);
+        let even = &steps[..steps.len() - 1];
+        assert!(even.windows(2).all(|pair| (pair[1] - pair[0]).abs_diff(4) <= 1));
+        assert_eq!((steps[0], steps[steps.len() - 1]), (0, 3 * MOST_ROWS as u64));
     }
 
     #[test]
@@ -148,7 +193,7 @@ mod tests {
         let mut curve = curve(1000);
         let shared = curve.clone();
         curve.truncate(300);
-        curve.push(Observables { step: 301, ..Observables::default() });
+        curve.push(row(301, 0.301));
         let steps: Vec<u64> = curve.rows().map(|row| row.step).collect();
         assert_eq!(steps, (0..=301).collect::<Vec<_>>());
         assert_eq!(shared.len(), 1001, "a copy that was handed out is left alone");

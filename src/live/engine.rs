@@ -455,6 +455,7 @@ impl Engine {
             worlds: worlds.collect(),
             name: run.name.clone(),
             past: self.history.told(),
+            ghosts: self.history.ghosts(shown_secs.unwrap_or_else(|| run.time_secs())),
             playing: self.mode.plays(),
             replaying: run.replays(),
             branching: run.branches(),

@@ -187,8 +187,6 @@ pub struct PastWorld {
     pub controls: Controls,
     /// Observables of the whole record.
     pub curve: Curve,
-    /// The state at which it was left.
-    pub snapshot: Arc<Snapshot>,
 }
 
 impl PastRun {
@@ -196,7 +194,6 @@ impl PastRun {
         let of_world = |world: &WorldHistory| PastWorld {
             controls: Controls::of(&world.simulation),
             curve: world.curve.clone(),
-            snapshot: Arc::new(world.simulation.snapshot()),
         };
         let ends = run.worlds.iter().map(|world| world.record.end_secs());
         Self {
@@ -317,13 +314,26 @@ impl RunHistory {
         self.present.name.clear();
     }
 
-    /// Keeps a run that has recorded steps, with a part of the memory for keyframes.
+    /// The worlds of the newest earlier run at a simulated time, or the last stored moment before; none if nothing is
+    /// stored.
+    pub(super) fn ghosts(&self, secs: f64) -> Vec<Arc<Snapshot>> {
+        let worlds = self.past.last().map_or(&[][..], |run| &run.worlds);
+        let snapshots =
+            worlds.iter().map(|world| Some(Arc::clone(&world.stored.at(secs)?.snapshot)));
+        snapshots.collect::<Option<_>>().unwrap_or_default()
+    }
+
+    /// Keeps a run of which something is recorded, with a part of the memory for keyframes. The newest one keeps a part of
+    /// its stored moments.
     fn keep(&mut self, mut run: LiveRun) {
         if !run.worlds.iter().any(|world| world.record.has_steps()) {
             return;
         }
         run.keep_within(self.recording_bytes / PART_OF_PAST);
-        run.worlds.iter_mut().for_each(|world| world.stored = StoredMoments::default());
+        let bytes = STORED_BYTES / PART_OF_PAST / run.worlds.len();
+        run.worlds.iter_mut().for_each(|world| world.stored.keep_within(bytes));
+        let older = self.past.iter_mut().flat_map(|run| &mut run.worlds);
+        older.for_each(|world| world.stored = StoredMoments::default());
         self.count += 1;
         run.number = self.count;
         self.past.push(run);

@@ -41,6 +41,35 @@ fn a_slider_that_is_let_go_starts_the_pile_again_and_leaves_a_ghost() {
 }
 
 #[test]
+fn the_ghost_is_at_the_simulated_time_of_the_run_and_says_what_it_is() {
+    let mut robot = open(pile());
+    robot.take_steps(40);
+    let before = robot.bits();
+    drag_time_step(&mut robot);
+    robot.until("the new run", |state| state.run.frame.time_secs() > 0.025);
+    robot.send(Command::Pause);
+    let long = robot.settings().parameters.time_step_secs;
+    for secs in [4.0 * long, 2.0 * long] {
+        robot.seek(secs);
+        let ghost = robot.state().run.frame.ghosts[0].observables;
+        assert!((ghost.time_secs - robot.observables().time_secs).abs() < 1.01e-3);
+        assert_eq!(ghost.time_step_secs, 1e-3);
+        robot.harness.step();
+        let texts = robot.painted_texts();
+        let label = format!("earlier run (grey): Δt 1 ms, at {:.3} s", ghost.time_secs);
+        assert!(texts.iter().any(|text| text.text == label), "{label}");
+    }
+    // Beyond its end it stays there, and a run that comes back has all of its moments.
+    robot.take_steps(12);
+    let ghost = robot.state().run.frame.ghosts[0].clone();
+    assert!((ghost.observables.time_secs - 0.04).abs() < 1e-9);
+    robot.command_key(egui::Key::Z);
+    robot.settle();
+    robot.seek(0.04);
+    assert_eq!(robot.bits(), before);
+}
+
+#[test]
 fn nothing_starts_while_a_slider_is_held() {
     let mut robot = open(pile());
     robot.take_steps(20);

@@ -138,6 +138,9 @@ fn released_piles_leave_a_point_each_though_the_next_is_released_before_their_ot
         assert_eq!(time_step, settings.parameters.time_step_secs);
         assert_near(point, headless(&settings));
     }
+    robot.harness.step();
+    let said = "Δt 1 ms → 2 ms: slump ";
+    assert!(robot.shows(said) && robot.shows(", eight piles each; difference "), "{said}");
     // The pile that is shown keeps its point.
     robot.click("Clear");
     robot.harness.step();

@@ -11,10 +11,12 @@ mod runs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::titles::change_text;
 use super::user_folder::user_folder;
 use crate::live::{LiveFrame, LiveStart};
 use crate::scene::NewPile;
 use crate::sim::Settings;
+use crate::study::Mean;
 pub(crate) use pool::Released;
 pub(super) use pool::on_idle_cores;
 use pool::{EnsembleSummary, WorkerPool, idle_cores};
@@ -75,7 +77,7 @@ impl Ensemble {
         self.worlds.clear();
     }
 
-    /// True where what is open has others, and there are cores to compute them.
+    /// True if what is open has others, and there are cores to compute them.
     pub(super) fn is_possible(&self) -> bool {
         self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
     }
@@ -170,6 +172,24 @@ impl Ensemble {
         self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
     }
 
+    /// The runs of the other piles with the settings of a pile that was released.
+    pub(crate) fn band(&self, settings: &Settings) -> Option<&Arc<Band>> {
+        let mut released = self.released.iter().filter(|_| !self.piles.is_empty());
+        released.find(|(own, _)| own == settings).map(|(_, band)| band)
+    }
+
+    /// The effect of a change of settings on the slump of the other piles at a simulated time, in a sentence; nothing if
+    /// fewer than two piles ran under both settings.
+    pub(crate) fn effect(
+        &self,
+        before: &Settings,
+        after: &Settings,
+        time_secs: f64,
+    ) -> Option<String> {
+        let paired = self.band(before)?.paired(self.band(after)?, time_secs)?;
+        Some(format!("{}: {}", change_text(before, after), effect(&paired, self.piles.len())?))
+    }
+
     /// How the other piles of a world come about, and which they are.
     pub(crate) fn about(&self, world: usize) -> String {
         let Some(summary) = self.summary(world) else { return RULE.into() };
@@ -210,6 +230,26 @@ impl Ensemble {
     }
 }
 
+/// Mean slump before and after a change and mean difference in words, for so many piles in all.
+fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<String> {
+    const WORDS: [&str; 9] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"];
+    let count = difference.count;
+    if count < 2 {
+        return None;
+    }
+    let piles = match WORDS.get(count).filter(|_| count == planned) {
+        Some(word) => format!("{word} piles"),
+        None => format!("{count} of {planned} piles"),
+    };
+    let said = |mean: &Mean| {
+        let half = mean.high - mean.mean;
+        let decimals = if half >= 0.01 { 2 } else { 3 };
+        format!("{:.decimals$} ± {half:.decimals$}", mean.mean).replace('-', "−")
+    };
+    let [before, after, difference] = [before, after, difference].map(said);
+    Some(format!("slump {before} → {after}, {piles} each; difference {difference} (paired)"))
+}
+
 /// What other piles say at a simulated time.
 fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let (planned, count) = (summary.seeds.len() - summary.failed, summary.band.count);
@@ -242,6 +282,30 @@ mod tests {
             failed: 0,
             settling,
         }
+    }
+
+    #[test]
+    fn the_effect_of_a_change_is_a_sentence() {
+        let band = |slumps: &[f64]| Band::clone(&told(slumps, None).band);
+        let settings = Settings::default().with_bond(20.0);
+        let released = [(1e-3, [0.2, 0.3, 0.25]), (1e-4, [0.4, 0.42, 0.41])];
+        let released =
+            released.map(|(secs, slumps)| (settings.over(secs), Arc::new(band(&slumps))));
+        let piles = vec![NewPile::default(); 3];
+        let mut ensemble = Ensemble { released: released.into(), piles, ..Ensemble::default() };
+        let said =
+            |ensemble: &Ensemble| ensemble.effect(&settings.over(1e-3), &settings.over(1e-4), 1.0);
+        let sentence = "Δt 1 ms → 0.1 ms: slump 0.25 ± 0.12 → 0.41 ± 0.02, three piles each; difference 0.16 ± 0.10 (paired)";
+        assert_eq!(said(&ensemble).as_deref(), Some(sentence));
+        assert_eq!(
+            ensemble.effect(&settings.over(1e-3), &settings.over(5e-3), 1.0),
+            None,
+            "never released"
+        );
+        ensemble.released[1].1 = Arc::new(band(&[0.4, 0.42]));
+        assert!(said(&ensemble).is_some_and(|said| said.contains(", 2 of 3 piles each;")));
+        ensemble.released[1].1 = Arc::new(band(&[0.4]));
+        assert_eq!(said(&ensemble), None, "one pile has no interval");
     }
 
     #[test]

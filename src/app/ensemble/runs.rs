@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::live::LiveStart;
 use crate::scene::{NewPile, Scene, built_in};
 use crate::sim::{RunEnding, Settings, Simulation};
-use crate::study;
+use crate::study::{self, Mean};
 use crate::world::Grain;
 
 /// A run's slump: simulated time, s, and Δy.
@@ -44,10 +44,28 @@ impl Band {
     /// Mean and half the width of the interval at the last time up to `time_secs`; nothing before the first and
     /// after the last.
     pub(crate) fn at(&self, time_secs: f64) -> Option<(f64, f64)> {
+        let index = self.index_at(time_secs)?;
+        Some((self.means[index], self.highs[index] - self.means[index]))
+    }
+
+    fn index_at(&self, time_secs: f64) -> Option<usize> {
         let (&last, spacing) = (self.times_secs.last()?, self.times_secs.get(1)?);
         let index = self.times_secs.partition_point(|&at| at <= time_secs + 1e-3 * spacing);
-        let index = index.checked_sub(1).filter(|_| time_secs < last + spacing)?;
-        Some((self.means[index], self.highs[index] - self.means[index]))
+        index.checked_sub(1).filter(|_| time_secs < last + spacing)
+    }
+
+    /// Slumps at a simulated time of the piles that ran under both settings: mean here, mean of `other`, and mean of the
+    /// differences, other − here.
+    pub(super) fn paired(&self, other: &Self, time_secs: f64) -> Option<[Mean; 3]> {
+        let (index, other_index) = (self.index_at(time_secs)?, other.index_at(time_secs)?);
+        let pair = |(pile, run): &(usize, SlumpSeries)| {
+            let (_, twin) = other.runs.iter().find(|(own, _)| own == pile)?;
+            Some([run[index][1], twin[other_index][1]])
+        };
+        let pairs: Vec<_> = self.runs.iter().filter_map(pair).collect();
+        let mean =
+            |value: fn(&[f64; 2]) -> f64| study::mean(&pairs.iter().map(value).collect::<Vec<_>>());
+        Some([mean(|pair| pair[0]), mean(|pair| pair[1]), mean(|pair| pair[1] - pair[0])])
     }
 }
 
@@ -146,6 +164,21 @@ mod tests {
         assert_eq!(band.at(0.5 - 1e-12), Some((2.0, half)), "rounding of times is none");
         assert_eq!(band.at(1.0).map(|(mean, _)| mean), Some(5.0));
         assert_eq!((band.at(-0.1), band.at(1.6)), (None, None));
+    }
+
+    #[test]
+    fn differences_are_those_of_the_piles_that_ran_under_both_settings() {
+        let runs = [[0.0, 1.0, 2.0], [0.0, 2.0, 4.0], [0.0, 3.0, 9.0], [0.0, 9.0, 9.0]].map(run);
+        let band = |piles: &[(usize, usize)]| {
+            Band::of(&piles.iter().map(|&(pile, one)| (pile, &runs[one])).collect::<Vec<_>>())
+        };
+        let (before, after) = (band(&[(0, 0), (1, 1), (2, 2)]), band(&[(5, 3), (2, 3), (1, 2)]));
+        let [one, other, difference] = before.paired(&after, 1.0).unwrap();
+        assert_eq!([one.mean, other.mean, difference.mean], [6.5, 9.0, 2.5]);
+        assert_eq!(difference.count, 2);
+        // Tables: t(0.975; 1) = 12.7062, and the standard error of 5 and 0 is 2.5.
+        assert!((difference.high - difference.mean - 12.7062 * 2.5).abs() < 1e-3);
+        assert!(before.paired(&after, 2.0).is_none());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Panel: what the run measures, against simulated time.
 
-use egui::{RichText, Ui};
+use egui::{Color32, RichText, Ui};
 
 use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
@@ -10,6 +10,7 @@ use crate::app::plots::{LEAST_WIDTH, PlotData, WorldCurve, draw, draw_with_key};
 use crate::app::preferences::Preferences;
 use crate::app::theme;
 use crate::app::time_step_figure::TimeStepFigure;
+use crate::app::titles::{millis_text, title_against};
 use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
 use crate::output::write_file;
@@ -91,9 +92,7 @@ fn data(ui: &Ui, context: &PanelContext<'_>) -> PlotData {
                 others: context.ensemble.summary(index).map(|summary| summary.band),
             })
             .collect(),
-        ghosts: context.ghost().map_or_else(Vec::new, |run| {
-            run.worlds.iter().map(|world| world.curve.clone()).collect()
-        }),
+        ghosts: ghosts(context),
         quantities: QUANTITIES
             .iter()
             .filter(|quantity| is_shown(context.run, context.preferences, quantity))
@@ -104,7 +103,22 @@ fn data(ui: &Ui, context: &PanelContext<'_>) -> PlotData {
     }
 }
 
-/// True where a quantity is chosen, or where nothing that is chosen says anything of what is open.
+/// The worlds of the run before.
+fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
+    let worlds = context.ghost().map_or(&[][..], |run| &run.worlds).iter();
+    let pairs = worlds.zip(&context.run.frame.worlds).map(|(before, now)| {
+        let (settings, now) = (&before.controls.settings, &now.controls.settings);
+        WorldCurve {
+            name: format!("earlier run: {}", title_against(settings, now)),
+            colour: Color32::from_gray(128).gamma_multiply(0.6),
+            curve: before.curve.clone(),
+            others: context.ensemble.band(settings).filter(|_| settings != now).cloned(),
+        }
+    });
+    pairs.collect()
+}
+
+/// True if a quantity is chosen, or where nothing that is chosen says anything of what is open.
 fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Observables>) -> bool {
     let is_chosen = |quantity: &Quantity<Observables>| {
         means_something(run, quantity)
@@ -113,7 +127,7 @@ fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Obs
     is_chosen(quantity) || (means_something(run, quantity) && !QUANTITIES.iter().any(is_chosen))
 }
 
-/// True where a quantity says anything of what is open.
+/// True if a quantity says anything of what is open.
 fn means_something(run: &WatchedRun, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || run.slumps()
 }
@@ -127,11 +141,22 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
         context.preferences.plots ^= plots.clicked();
         let hint = context.ensemble.about(context.run.selected);
         let said = context.ensemble.said(&context.run.frame, context.run.selected);
-        if let (Some(said), Some(world)) = (said, context.run.world()) {
-            let text = format!("Δy {:.3}; {said}", world.snapshot.observables.slump);
+        let own = context.run.slump_text(context.run.selected);
+        let text = effect(context).or_else(|| Some(format!("{own}; {}", said?)));
+        if let Some(text) = text {
             ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
         }
     });
+}
+
+/// The effect of the last change of settings on other piles, at the moment that is shown.
+fn effect(context: &PanelContext<'_>) -> Option<String> {
+    let frame = &context.run.frame;
+    let mut worlds = context.ghost()?.worlds.iter().zip(&frame.worlds);
+    let (before, now) =
+        worlds.find(|(before, now)| before.controls.settings != now.controls.settings)?;
+    let (before, now) = (&before.controls.settings, &now.controls.settings);
+    context.ensemble.effect(before, now, frame.time_secs()).filter(|_| !frame.at_start())
 }
 
 /// What is plotted, and what saves it.
@@ -193,8 +218,10 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
             Ok(path)
         });
     }
-    let strides = context.run.frame.worlds.iter().map(|world| world.curve.stride());
-    if let Some(stride) = strides.max().filter(|&stride| stride > 1) {
-        ui.label(RichText::new(format!("plotted: one step in {stride}")).small().weak());
+    let worlds = context.run.frame.worlds.iter();
+    let spacing_secs = worlds.map(|world| world.curve.least_spacing_secs()).fold(0.0, f64::max);
+    if spacing_secs > 0.0 {
+        let text = format!("plotted: a step every {}", millis_text(spacing_secs));
+        ui.label(RichText::new(text).small().weak());
     }
 }

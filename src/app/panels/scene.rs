@@ -8,6 +8,7 @@ use super::scene_style::{columns, shared_style};
 use crate::app::context::PanelContext;
 use crate::app::painting::{LegendCache, fill, scene_callback};
 use crate::app::theme;
+use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Legend, ScaleBar, Style, scene_picture};
 
@@ -122,18 +123,23 @@ fn cells(area: Rect, count: usize) -> Vec<Rect> {
 }
 
 impl WorldCell<'_> {
-    /// The same world of the run before, where that had one.
+    /// The same world of the run before at the same simulated time, and its settings.
     fn ghost(&self, ui: &Ui, context: &PanelContext<'_>) {
         let Some(run) = context.ghost() else { return };
-        if run.worlds.len() != context.run.frame.worlds.len() {
-            return;
-        }
         let Some(world) = run.worlds.get(self.index) else { return };
-        let grains = &world.snapshot.grains;
+        let Some(snapshot) = context.run.frame.ghosts.get(self.index) else { return };
+        let grains = &snapshot.grains;
         if grains.len() > MOST_OUTLINES {
             return;
         }
         let painter = ui.painter().with_clip_rect(self.cell);
+        let title = title_against(&world.controls.settings, &self.frame.controls.settings);
+        let text =
+            format!("earlier run (grey): {title}, at {:.3} s", snapshot.observables.time_secs);
+        let lines = if context.run.compares() { 2.0 } else { 0.0 };
+        let at = self.cell.min + egui::vec2(8.0, 0.5 * TITLE_HEIGHT + 16.0 * lines);
+        let ink = ui.visuals().weak_text_color();
+        painter.text(at, Align2::LEFT_CENTER, text, FontId::proportional(11.0), ink);
         let stroke = Stroke::new(1.0, Color32::from_gray(128).gamma_multiply(0.55));
         for grain in grains {
             painter.circle_stroke(
