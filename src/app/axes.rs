@@ -23,8 +23,8 @@ pub(super) fn bare_plot<'a>(
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
 }
 
-/// A plot with an axis along x in that unit; `log` says which axes are logarithmic. Numbers along a logarithmic axis with
-/// a unit are written in full.
+/// A plot with an axis along x in that unit; `log` says which axes are logarithmic. Numbers along a logarithmic axis
+/// with a unit are written in full.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,

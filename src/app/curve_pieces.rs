@@ -6,8 +6,9 @@ use crate::sim::Observables;
 /// Intervals of time of which a long curve shows its extremes.
 const BUCKETS: usize = 300;
 
-/// The curve up to a time, in pieces. Values that are not finite, such as the logarithm of 0, leave a gap between two pieces,
-/// unless it is too narrow to be seen. A long curve shows the first, last, least and largest value of every interval of time.
+/// The curve up to a time, in pieces. Values that are not finite, such as the logarithm of 0, leave a gap between two
+/// pieces, unless it is too narrow to be seen. A long curve shows the first, last, least and largest value of every
+/// interval of time.
 pub(super) fn pieces(
     curve: &Curve,
     until_secs: f64,

@@ -112,8 +112,9 @@ pub const LESSONS: [Lesson; 7] = [
     },
     Lesson {
         title: "A bond made is a bond",
-        watch: "This pile is stepped by 5 ms. Release it. When it stands, drag Δt to 0.1 ms: time goes on, and the pile \
-                stays as it is, because its bonds hold. Then tick the box below and drag Δt a little: from the start, it slumps.",
+        watch: "This pile is stepped by 5 ms. Release it. When it stands, drag Δt to 0.1 ms: time goes on, and the \
+                pile stays as it is, because its bonds hold. Then tick the box below and drag Δt a little: from the \
+                start, it slumps more.",
         worlds: |base| vec![base.with_bond(20.0).over(LONG_STEP_SECS)],
         starts_again: false,
         leaves_free: |name| name == "dt",

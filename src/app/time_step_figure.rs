@@ -14,8 +14,8 @@ use crate::sim::Settings;
 /// What is written above the plot.
 const TITLE: &str = "slump against Δt";
 /// What a point is.
-const HINT: &str = "A point for each pile that was released: the mean slump of its other piles at the end of the scene, with \
-                    its 95 % interval.";
+const HINT: &str = "A point for each pile that was released: the mean slump of its other piles at the end of the \
+                    scene, with its 95 % interval.";
 /// The time steps that the axis shows at least, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
 /// Half the width of the ends of an error bar, decades.

@@ -11,8 +11,8 @@ const CHUNK: usize = 256;
 /// Where a curve becomes longer, rows are thinned by simulated time. 32,768 rows are 6 MB.
 const MOST_ROWS: usize = 32_768;
 
-/// Observables in the order of time: every step's, or in a long run rows with a least distance in simulated time. The first
-/// row and the newest are always among them.
+/// Observables in the order of time: every step's, or in a long run rows with a least distance in simulated time. The
+/// first row and the newest are always among them.
 ///
 /// A clone shares all full chunks and copies fewer than 256 rows.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]

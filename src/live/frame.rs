@@ -28,7 +28,7 @@ pub struct LiveFrame {
     pub name: String,
     /// Earlier runs, the newest last.
     pub past: Arc<[PastRun]>,
-    /// The worlds of the newest of them at the simulated time that is shown, or at its end; none if they are not stored.
+    /// The worlds of the newest of them at the simulated time that is shown, or at its end; empty if nothing is stored.
     pub ghosts: Vec<Arc<Snapshot>>,
     /// True if time passes.
     pub playing: bool,

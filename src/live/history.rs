@@ -323,8 +323,8 @@ impl RunHistory {
         snapshots.collect::<Option<_>>().unwrap_or_default()
     }
 
-    /// Keeps a run of which something is recorded, with a part of the memory for keyframes. The newest one keeps a part of
-    /// its stored moments.
+    /// Keeps a run of which something is recorded, with a part of the memory for keyframes. The newest one keeps a part
+    /// of its stored moments.
     fn keep(&mut self, mut run: LiveRun) {
         if !run.worlds.iter().any(|world| world.record.has_steps()) {
             return;

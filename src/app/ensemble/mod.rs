@@ -158,8 +158,8 @@ impl Ensemble {
         self.released.clear();
     }
 
-    /// Settings of piles that were released, and the runs of their other piles. A pile that is shown is among them once it
-    /// has reached its end.
+    /// Settings of piles that were released, and the runs of their other piles. A pile that is shown is among them once
+    /// it has reached its end.
     pub(crate) fn released(&self, frame: &LiveFrame) -> impl Iterator<Item = &Released> {
         let end_secs = self.kind.as_ref().map_or(f64::INFINITY, |kind| kind.duration_secs);
         let is_on_its_way = move |settings: &Settings| {
@@ -178,8 +178,8 @@ impl Ensemble {
         released.find(|(own, _)| own == settings).map(|(_, band)| band)
     }
 
-    /// The effect of a change of settings on the slump of the other piles at a simulated time, in a sentence; nothing if
-    /// fewer than two piles ran under both settings.
+    /// The effect of a change of settings on the slump of the other piles at a simulated time, in a sentence; nothing
+    /// if fewer than two piles ran under both settings.
     pub(crate) fn effect(
         &self,
         before: &Settings,
@@ -295,7 +295,8 @@ mod tests {
         let mut ensemble = Ensemble { released: released.into(), piles, ..Ensemble::default() };
         let said =
             |ensemble: &Ensemble| ensemble.effect(&settings.over(1e-3), &settings.over(1e-4), 1.0);
-        let sentence = "Δt 1 ms → 0.1 ms: slump 0.25 ± 0.12 → 0.41 ± 0.02, three piles each; difference 0.16 ± 0.10 (paired)";
+        let sentence = "Δt 1 ms → 0.1 ms: slump 0.25 ± 0.12 → 0.41 ± 0.02, three piles each; \
+                        difference 0.16 ± 0.10 (paired)";
         assert_eq!(said(&ensemble).as_deref(), Some(sentence));
         assert_eq!(
             ensemble.effect(&settings.over(1e-3), &settings.over(5e-3), 1.0),

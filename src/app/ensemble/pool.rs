@@ -108,8 +108,8 @@ impl Jobs {
         !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
     }
 
-    /// Begins the next job: first those of the worlds, then those of earlier settings, the newest first. With it come the
-    /// grains that are to run.
+    /// Begins the next job: first those of the worlds, then those of earlier settings, the newest first. With it come
+    /// the grains that are to run.
     fn next(&mut self, piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         let worlds = self.worlds.iter().copied().flatten().collect();
         let earlier = self.released.iter().rev().map(|&settings| vec![settings]);
@@ -214,8 +214,8 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Has worlds with these settings, and piles with these settings that were released. What was computed for others is
-    /// forgotten.
+    /// Computes for worlds with these settings, then for released piles with these settings. Forgets the runs of all
+    /// other settings.
     pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
         let mut jobs = self.state.lock();
         let is_wanted =

@@ -54,8 +54,8 @@ impl Band {
         index.checked_sub(1).filter(|_| time_secs < last + spacing)
     }
 
-    /// Slumps at a simulated time of the piles that ran under both settings: mean here, mean of `other`, and mean of the
-    /// differences, other − here.
+    /// Slumps at a simulated time of the piles that ran under both settings: mean here, mean of `other`, and mean of
+    /// the differences, other − here.
     pub(super) fn paired(&self, other: &Self, time_secs: f64) -> Option<[Mean; 3]> {
         let (index, other_index) = (self.index_at(time_secs)?, other.index_at(time_secs)?);
         let pair = |(pile, run): &(usize, SlumpSeries)| {
