@@ -98,8 +98,7 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
 /// Saves the points of Fig. 5a: Δt, mean, half the interval and number of piles of each.
 fn saved_points(robot: &mut Robot) -> Vec<(f64, (f64, f64, usize))> {
     robot.click("CSV");
-    let saved = robot.saved();
-    let table = text(&saved);
+    let table = read(robot.saved());
     let point = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
         let [time_step, mean, half] = [2, 3, 4].map(|cell| cells[cell].parse().expect("a number"));
