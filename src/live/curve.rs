@@ -74,9 +74,11 @@ impl Curve {
             let mean_spacing = (last - first) / (rows.len() - 1) as f64;
             let spacing = (2.0 * self.least_spacing_secs).max(2.0 * mean_spacing);
             let mut thinned = vec![rows[0]];
-            for row in &rows[1..] {
+            for (index, row) in rows.iter().enumerate().skip(1) {
                 let kept = thinned[thinned.len() - 1].time_secs;
-                if row.time_secs - kept >= (1.0 - ROUNDING) * spacing || row.time_secs == last {
+                let is_apart =
+                    row.time_secs > kept && row.time_secs - kept >= (1.0 - ROUNDING) * spacing;
+                if is_apart || index == rows.len() - 1 {
                     thinned.push(*row);
                 }
             }
@@ -159,6 +161,16 @@ mod tests {
             let ends = [curve.rows().next(), curve.last()].map(|row| row.map(|row| row.step));
             assert_eq!(ends, [Some(0), Some(200 + short)]);
         }
+    }
+
+    #[test]
+    fn steps_that_are_too_short_to_advance_the_time_are_thinned_to_the_ends() {
+        let mut curve = Curve::default();
+        let time_secs = 1.0;
+        assert_eq!(time_secs + 1e-20, time_secs, "the situation");
+        (0..1000).for_each(|step| curve.push(row(step, time_secs)));
+        curve.thin_to(512);
+        assert_eq!(curve.rows().map(|row| row.step).collect::<Vec<_>>(), [0, 999]);
     }
 
     #[test]

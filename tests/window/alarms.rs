@@ -35,6 +35,24 @@ fn an_overlap_that_nearly_every_run_shows_is_no_alarm_and_a_larger_one_is() {
 }
 
 #[test]
+fn the_alarm_on_a_large_overlap_stays_when_the_overlap_is_gone() {
+    let mut config = scene("pile");
+    config.parameters.bond = Some(0.0);
+    config.parameters.time_step_secs = Some(5e-3);
+    config.remedies.push_out = Some(true);
+    let mut robot = Robot::open(config);
+    let mut largest = 0f64;
+    for _ in 0..40 {
+        robot.take_steps(1);
+        largest = largest.max(robot.observables().max_overlap);
+    }
+    robot.take_steps(300);
+    robot.harness.step();
+    assert!(largest > 0.2 && robot.observables().max_overlap < 0.2, "the situation");
+    assert!(robot.shows("a contact overlaps"));
+}
+
+#[test]
 fn whoever_points_at_an_alarm_reads_it_whole_and_once() {
     let mut robot = Robot::open(scene("thin-wall"));
     robot.take_steps(40);

@@ -32,7 +32,12 @@ fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
         AlarmKind::SweepLimit => {
             solver == FAST.among(&world.snapshot.surroundings) && parameters.bond == 0.0
         }
-        AlarmKind::Overlap => world.snapshot.observables.max_overlap <= USUAL_OVERLAP,
+        // An overlap that has passed since stays a reason for the alarm.
+        AlarmKind::Overlap => {
+            let now = &world.snapshot.observables;
+            let mut rows = world.curve.rows().chain([now]);
+            rows.all(|row| row.max_overlap <= USUAL_OVERLAP)
+        }
         _ => false,
     }
 }
