@@ -183,8 +183,7 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
         let most = times().fold(0.0, f64::max).max(10.0 * least);
         let mut chart = Chart::new(
             timed.title.clone(),
-            // Space for the names of curves.
-            Axis::log("time of a step (ms)", 0.7 * least, 12.0 * most),
+            Axis::log("time of a step (ms)", 0.7 * least, 1.5 * most),
             Axis::log("error against Coulomb's law, √(g d)", 0.5 * LEAST_ERROR, 3.0),
         );
         let floor = timed.of_references(References::floor);
@@ -194,15 +193,11 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
             let name = "not told apart".to_owned();
             chart.layers.push(Layer::Cells { name, cells: vec![cell], colour: |_| BAND });
         }
-        let mut ends = Vec::new();
         for (family, curve) in curves {
-            let end = curve.last();
-            ends.extend(end.map(|&end| (family.name().to_owned(), family.colour(), end)));
             let look = if family == Family::Default { Look::Dots(7) } else { Look::LineAndDots };
             let (name, curve) = (family.name(), points(curve));
-            chart.layers.push(Layer::quiet(name, curve, family.colour(), look));
+            chart.layers.push(Layer::curve(name, curve, family.colour(), look));
         }
-        chart.add_end_labels(ends);
         charts.push(chart);
     }
     let charted = all.iter().take(1).flat_map(|timed| &timed.variants);

@@ -15,8 +15,7 @@ pub(super) fn sheet(
 ) -> Sheet {
     let costs = || simulated.iter().filter(|point| point.failed.is_none()).map(cost);
     let least = 0.6 * costs().fold(f64::INFINITY, f64::min).min(1.0);
-    // Space for the names of curves.
-    let most = 7.0 * costs().fold(0.0, f64::max).max(10.0 * least);
+    let most = 1.5 * costs().fold(0.0, f64::max).max(10.0 * least);
     let finest = format!("Against Δt = {:e} s: step and solver", FINEST_SECS);
     let panels = [
         ("Against the same Δt: the solver", Some(references.floor(plan))),
@@ -37,10 +36,17 @@ pub(super) fn sheet(
     let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
     let (piles, grains) = (plan.piles.len(), NewPile::default().grains);
     let intervals = if piles >= TELLING { ", with 95 % intervals" } else { "" };
+    let failed_of = |family| {
+        let failed = simulated.iter().filter(|point| point.failed.is_some());
+        failed.filter(|point| point.variant.charted.family() == family).count()
+    };
+    let families = Family::ALL.into_iter().filter(|family| failed_of(*family) > 0);
+    let failures = listed(families, |family| format!("{} of {}", failed_of(family), family.name()));
+    let failures = if failures.is_empty() { "none" } else { &failures };
     let caption = bench.caption(&[
         &format!(
             "What each family comes to at best for its cost{intervals}; means over {piles} piles of {grains} grains, Δt of \
-             {steps} and all budgets. A budget that is too slow or blows up has failed. Dashes: two references differ by so much."
+             {steps} and all budgets. Budgets that are too slow or blow up have failed: {failures}. Dashes: two references differ by so much."
         ),
         &variants::members(plan.budgeted.iter().map(|one| &one.charted)),
         &format!("References by {REFERENCE}. Slump after {DURATION_SECS} s."),
@@ -66,12 +72,10 @@ fn with_errors(
     }
     // Errors below the floor are not distinguished.
     let least = floor.unwrap_or(0.0).max(LEAST_ERROR);
-    let mut ends = Vec::new();
     for family in Family::ALL {
         let is_its = |point: &&SimulatedPoint| point.variant.charted.family() == family;
-        let its: Vec<_> = simulated.iter().filter(is_its).collect();
-        let (good, failed): (Vec<_>, Vec<_>) =
-            its.into_iter().partition(|point| point.failed.is_none());
+        let good: Vec<_> =
+            simulated.iter().filter(is_its).filter(|point| point.failed.is_none()).collect();
         let honest: Vec<(f64, f64)> =
             good.iter().map(|point| (point.speed, point.errors[panel].mean.max(least))).collect();
         let front = pareto_front(&honest).into_iter().rev();
@@ -85,15 +89,8 @@ fn with_errors(
                 Point { x: cost(good[index]), y: inside(mean), interval }
             })
             .collect();
-        let (name, colour) = (family.name(), family.colour());
-        let said = match failed.len() {
-            0 => name.to_owned(),
-            count => format!("{name}, {count} failed"),
-        };
-        ends.extend(front.last().map(|end| (said, colour, (end.x, end.y))));
-        chart.layers.push(Layer::quiet(name, front, colour, Look::LineAndDots));
+        chart.layers.push(Layer::curve(family.name(), front, family.colour(), Look::LineAndDots));
     }
-    chart.add_end_labels(ends);
     chart
 }
 
