@@ -1,20 +1,21 @@
-//! The budget of the solver: how well steps are solved at first, what else is one click away, and what to try.
+//! Presets of the solver that the window offers, and hints on experiments.
 
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic};
 
-/// A way to solve steps that has a name.
+/// A named preset of the solver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
     pub name: &'static str,
-    /// What it costs, in time and in accuracy.
+    /// Cost of the preset, in time and in accuracy.
     pub hint: &'static str,
     pub settings: SolverSettings,
 }
 
 impl Budget {
-    /// What it is where borders shear or a force drives a wall: by the method next to its own that knows of them.
+    /// Settings of the preset in these surroundings. If its solver supports no sheared borders or driven walls that
+    /// are there, uses `nsgs`.
     pub(super) fn among(&self, surroundings: &Surroundings) -> SolverSettings {
         let info = self.settings.method.info();
         let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
@@ -26,7 +27,7 @@ impl Budget {
     }
 }
 
-/// Forty sweeps, by all cores.
+/// 40 sweeps on all cores.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
     hint: "40 sweeps a step, solved or not: some 10 ms for 10,000 grains. Without cohesion large piles slump nearly as they do \
@@ -34,7 +35,7 @@ pub(super) const FAST: Budget = Budget {
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 
-/// As the paper's figures are drawn.
+/// The paper's solver.
 pub(super) const PAPER: Budget = Budget {
     name: "Paper",
     hint: "The paper's scheme: Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are \
@@ -42,7 +43,7 @@ pub(super) const PAPER: Budget = Budget {
     settings: SolverSettings::PAPER,
 };
 
-/// What everything begins with.
+/// The default.
 pub(super) const SOLVED: Budget = Budget {
     name: "Solved",
     hint: "Each step is solved under Coulomb's law, by Newton's method. If it does not solve a step of a flowing pile, conjugate \
@@ -50,10 +51,11 @@ pub(super) const SOLVED: Budget = Budget {
     settings: SolverSettings::DEFAULT,
 };
 
-/// All of them.
+/// All presets, in the order of their buttons.
 pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
-/// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`docs/paper.md`, Fig. 5a); beyond it need not.
+/// Largest Bond at which a larger Δt makes a pile with the shifted cone hold better (`docs/paper.md`, Fig. 5a).
+/// Stronger piles need not.
 const WEAK: f64 = 50.0;
 
 /// Overlap, in mean diameters, up to which a contact is only found late. A grain that falls down the paper's pile (10 d) moves
@@ -77,7 +79,7 @@ pub(super) fn too_long(
     })
 }
 
-/// What to try, and what to watch.
+/// A hint: something to try and its effect.
 pub(super) fn what_to_try(settings: &Settings) -> &'static str {
     let parameters = &settings.parameters;
     if parameters.bond == 0.0 {
