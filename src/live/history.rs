@@ -21,7 +21,7 @@ const PART_OF_PAST: usize = 8;
 /// keyframes can be computed again.
 const KEYFRAME_BYTES: usize = 8 << 20;
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Largest number of rows of their curves; a row is about 500 bytes in a file.
+/// Largest number of rows per curve in a history that is handed out; a row is about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
 /// Time after which a tick pauses for commands. A world whose time step is far shorter than the leader's takes
