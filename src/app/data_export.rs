@@ -117,14 +117,14 @@ impl DataOrder {
     fn stretch_of(&self, record: &WorldRecord) -> Result<[f64; 2]> {
         let Some([from, to]) = self.stretch else { return Ok([f64::NEG_INFINITY, f64::INFINITY]) };
         let (first, last) = (record.start().time_secs(), record.end_secs());
-        let recorded = format!("within what is recorded, {first} s to {last} s");
+        let recorded = format!("within the record, {first} s to {last} s");
         for (name, secs) in [("from", from), ("to", to)] {
             if !(first..=last).contains(&secs) {
                 return Err(Error::value(name, secs, recorded));
             }
         }
         if to < from {
-            let allowed = format!("at or after the {from} s it is to begin at");
+            let allowed = format!("{from} s, the beginning, or later");
             return Err(Error::value("to", to, allowed));
         }
         Ok([from, to])
