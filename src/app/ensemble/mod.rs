@@ -25,10 +25,12 @@ pub(crate) use runs::Band;
 use runs::others_of;
 
 /// Rule for the mean, as a hover text.
-const RULE: &str = "Idle cores run piles that differ from this one in their seed alone, with the present settings from \
-                    the start on: thin lines, and their mean dashed. ± is the 95 % interval of that mean (Student's), not \
-                    how far piles differ. Other settings begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
-                    reset it. The seed of the shipped pile, which was chosen, is never among them.";
+const RULE: &str = "Idle cores run other piles with the present settings from their initial state on. They differ \
+                    from this pile only in their seed. Thin lines show these piles, the dashed line shows their \
+                    mean. ± is the 95 % interval of that mean (Student's), not the spread of the piles. They start \
+                    again when the settings change. A run whose settings changed on the way, or that was pulled by \
+                    hand, has no other piles: reset it. The seed of the shipped pile, which was chosen, is never \
+                    among them.";
 
 /// The other piles of the open scene.
 #[derive(Default)]
@@ -201,7 +203,7 @@ impl Ensemble {
             text += &format!(" Rain {number} of {}: {:.0} %.", seeds.len(), 100.0 * part);
         }
         if failed > 0 {
-            text += &format!(" {failed} of the runs came to no end and are left out.");
+            text += &format!(" {failed} of the runs failed and are left out.");
         }
         text
     }
@@ -264,11 +266,11 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
             format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
         }
         (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
-        (None, _) if count > 0 => "other piles were not run so far".into(),
+        (None, _) if count > 0 => "other piles end earlier".into(),
         (None, Some((number, _))) => {
             format!("other piles: rain {number} of {}", summary.seeds.len())
         }
-        (None, None) => "other piles are under way".into(),
+        (None, None) => "other piles are being computed".into(),
     }
 }
 
@@ -318,7 +320,7 @@ mod tests {
         assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
         assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
         assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: rain 2 of 3");
-        assert_eq!(said(&told(&[], None), 0.0), "other piles are under way");
-        assert_eq!(said(&told(&[0.25], None), 9.0), "other piles were not run so far");
+        assert_eq!(said(&told(&[], None), 0.0), "other piles are being computed");
+        assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");
     }
 }
