@@ -40,10 +40,10 @@ impl Drop for Exports {
 }
 
 /// Message for a link that describes the whole run.
-const COPIED: &str = "The link is copied: paste it into a window, or give it to slump --open.";
+const COPIED: &str = "The link is copied: paste it into a window, or pass it to slump --open.";
 /// Message for a link that lacks changes by hand.
-const PULLED: &str = "The link is copied; something was pulled by hand, added or removed, or a wall drawn, which it does not \
-                      tell: it makes another run, and a session this one.";
+const PULLED: &str = "The link is copied. It lacks changes by hand (grains that were pulled by hand, added or \
+                      removed, walls that were moved), so it makes another run. A session keeps these changes.";
 
 impl Exports {
     /// True while a file or a recording is being written.
