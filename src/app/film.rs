@@ -65,7 +65,7 @@ impl FilmOrder {
         let (format, count) = (self.format, self.picture.worlds.len());
         let made = if runs.len() == count { self.write(runs, reporter)? } else { None };
         let Some((path, pictures)) = made else {
-            return Ok(format!("Stopped: there is no {}", format.name()));
+            return Ok(format!("Stopped: no {} is saved", format.name()));
         };
         let whole = std::path::absolute(&path).unwrap_or(path);
         Ok(format!("Saved {} of {}", whole.display(), counted(pictures as u64, "picture")))
@@ -127,7 +127,7 @@ impl FilmOrder {
         if !(0.0..MOST_PICTURES).contains(&count) {
             let found =
                 format!("{} s at {} pictures a second", until - from, self.rate_hz / self.speed);
-            let allowed = format!("one picture at least and no more than {MOST_PICTURES}");
+            let allowed = format!("at least one picture and at most {MOST_PICTURES}");
             return Err(Error::value(self.format.name(), found, allowed));
         }
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
