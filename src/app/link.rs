@@ -76,8 +76,8 @@ pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     let mut is_by_hand = false;
     for TakenRun { world, .. } in runs {
         if world.record.start().observables().step > 0 {
-            let allowed = "one that began with a scene; a saved session tells of this one";
-            return Err(Error::value("run", "one that goes on from a saved run", allowed));
+            let allowed = "one that began with a scene: save a session instead";
+            return Err(Error::value("run", "continued from a saved run", allowed));
         }
         let now = &world.simulation;
         let steps = now.observables().step;
@@ -119,7 +119,7 @@ impl RunLink {
                 Error::value(format!("link: {name}"), &value, "the number of a step")
             })?;
             if step < after {
-                let allowed = format!("no step before {after}, which comes before it");
+                let allowed = format!("at least {after}, the step before it in the link");
                 return Err(Error::value(format!("link: {name}"), step, allowed));
             }
             let config =
@@ -130,8 +130,8 @@ impl RunLink {
             if is_first {
                 link.source = source.clone();
             } else if *source != SceneSource::default() {
-                let allowed = "said once, before the first step";
-                return Err(Error::value("link: the origin of the scene", "said twice", allowed));
+                let allowed = "given once, before the first step";
+                return Err(Error::value("link: the origin of the scene", "given twice", allowed));
             }
             changes.push((after, Config { source: SceneSource::default(), ..config }));
             after = step;
@@ -238,8 +238,11 @@ mod tests {
             ("http://example.org/?scene=pile", "but must be a line"),
             ("slump://run?scene=pile&to=3&bond=5", "but must be a line"),
             ("slump://run?scene=pile&to=-3", "link: to is -3, but must be the number of a step"),
-            ("slump://run?from=9&to=3", "link: to is 3, but must be no step before 9"),
-            ("slump://run?scene=pile&to=3&scene=drum&to=4", "said once"),
+            (
+                "slump://run?from=9&to=3",
+                "link: to is 3, but must be at least 9, the step before it in the link",
+            ),
+            ("slump://run?scene=pile&to=3&scene=drum&to=4", "given once"),
             ("slump://run?glue=3&to=3", "--glue"),
             ("slump://run?bond=much&to=3", "--bond is much"),
             ("slump://run?save=a&to=3", "--save is given, but must be a setting"),
