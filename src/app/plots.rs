@@ -280,8 +280,9 @@ impl ChosenPlot {
             let label = format!("Quantity along {name}");
             list.response
                 .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &label));
-            ui.toggle_value(&mut self.logarithmic[axis], format!("log {name}"))
-                .on_hover_text("Equal distances are equal factors; values up to 0 do not show.");
+            ui.toggle_value(&mut self.logarithmic[axis], format!("log {name}")).on_hover_text(
+                "Equal distances are equal factors. Values of 0 and below are not shown.",
+            );
         }
     }
 
