@@ -5,8 +5,8 @@ use crate::config::{Config, Provenance, asked_time_secs, joined, words_up_to};
 use crate::output::Texts;
 
 /// Text in files of a run that no command line reproduces.
-pub(super) const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
-                       of the moment that is shown, and make another run";
+pub(super) const CHANGED: &str = "the run had other settings before, or was changed by hand: the command line and \
+                                  the settings of the visible moment make another run";
 
 impl WatchedRun {
     /// Command line that computes the selected world from its initial state with the present settings, bit for bit and
