@@ -40,7 +40,7 @@ pub(super) fn open_session(path: &Path) -> Result<LiveStart> {
     let start: LiveStart = SEAL.open(path)?;
     let is_sound = start.history.as_ref().is_some_and(|history| history.is_sound());
     if !is_sound || arrangement_of(&start).is_none() {
-        let reason = format!("holds no whole session, but must be {}", SEAL.form);
+        let reason = format!("holds no complete session, but must be {}", SEAL.form);
         return Err(Error::file(path, reason));
     }
     Ok(start)
@@ -62,7 +62,9 @@ pub(super) fn write_session(
         return Err(not_finite());
     }
     let path = free_path(folder, stem, SESSION_ENDING);
-    let refuse = |error| Error::value("window", "arranged so", format!("written ({error})"));
+    let refuse = |error| {
+        Error::value("window", "arranged like this", format!("one that can be written ({error})"))
+    };
     let window = Some(ron::to_string(arrangement).map_err(refuse)?);
     write_file(&path, &SEAL.written(&LiveStart { window, ..start })?)?;
     Ok(path)
