@@ -45,7 +45,9 @@ impl SettlingProgress {
             format!("Raining a new pile of {grains}")
         } else {
             let fastest = settling.speed_over_rest;
-            format!("A new pile of {grains} comes to rest: fastest grain {fastest:.0} × rest")
+            format!(
+                "A new pile of {grains} comes to rest: fastest grain {fastest:.0} times too fast"
+            )
         };
         let text = text + &self.left(self.begun.elapsed().as_secs_f64());
         LoadingProgress { part: self.part as f32, text, preview: self.preview.clone() }
@@ -58,9 +60,9 @@ impl SettlingProgress {
         }
         let left_secs = elapsed_secs * (1.0 - self.part) / self.part;
         if left_secs < 90.0 {
-            format!(", some {:.0} s left", left_secs.ceil())
+            format!(", about {:.0} s left", left_secs.ceil())
         } else {
-            format!(", some {:.0} min left", (left_secs / 60.0).ceil())
+            format!(", about {:.0} min left", (left_secs / 60.0).ceil())
         }
     }
 }
@@ -127,7 +129,7 @@ mod tests {
         making.part = 0.01;
         assert_eq!(making.left(1.0), "");
         making.part = 0.25;
-        assert_eq!(making.left(4.0), ", some 12 s left");
-        assert_eq!(making.left(100.0), ", some 5 min left");
+        assert_eq!(making.left(4.0), ", about 12 s left");
+        assert_eq!(making.left(100.0), ", about 5 min left");
     }
 }
