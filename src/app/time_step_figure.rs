@@ -14,8 +14,8 @@ use crate::sim::Settings;
 /// Title of the plot.
 const TITLE: &str = "slump against Δt";
 /// Hover text: meaning of a point.
-const HINT: &str = "A point for each pile that was released: the mean slump of its other piles at the end of the \
-                    scene, with its 95 % interval.";
+const HINT: &str = "One point per released pile: the mean slump of its other piles at the end of the scene, with \
+                    its 95 % interval.";
 /// Least range of the time step axis, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
 /// Half the width of the caps of an error bar, decades.
