@@ -160,7 +160,8 @@ impl App {
         drop(input);
         self.losses += 1;
         if self.losses > MOST_LOSSES {
-            let message = "the graphics device was lost again and again; --headless still works";
+            let message =
+                "the graphics device was lost several times in a row; --headless still works";
             self.fail(events, Error::Renderer(message.into()));
             return;
         }
@@ -171,7 +172,8 @@ impl App {
         match WindowSurface::new(events, &window, self.renderer) {
             Ok(surface) => {
                 self.show(window, surface);
-                self.state.warn("The graphics device was lost and opened anew; the run went on.");
+                self.state
+                    .warn("The graphics device was lost and opened again; the run continued.");
             }
             Err(error) => self.fail(events, error),
         }
