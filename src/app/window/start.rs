@@ -53,7 +53,7 @@ pub(super) fn first(
 ) -> Result<Opener> {
     if (options.session.is_some() || options.open.is_some()) && !asked.is_empty() {
         let field = if options.session.is_some() { "session" } else { "open" };
-        let allowed = "left out where a scene or a setting is given: it has its own";
+        let allowed = "left out if a scene or a setting is given, because it has its own";
         return Err(Error::value(field, "given", allowed));
     }
     if let Some(path) = &options.session {
