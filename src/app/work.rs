@@ -171,7 +171,7 @@ impl<T> Work<T> {
                 Ok(outcome) => Some(outcome),
                 Err(TryRecvError::Empty) => None,
                 Err(TryRecvError::Disconnected) => {
-                    Some(Err(Error::value("work", "ended by a fault", "ended when it is done")))
+                    Some(Err(Error::value("work", "stopped by a fault", "finished")))
                 }
             },
             #[cfg(target_arch = "wasm32")]

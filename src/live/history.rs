@@ -397,7 +397,7 @@ impl RunHistory {
             let goes_on = goes_on.try_reduce(|| false, |one, other| Ok(one || other))?;
             let taken: u64 = planned.iter().map(|(world, _)| world.steps()).sum();
             let part = taken as f32 / all.max(1) as f32;
-            let text = format!("Computing what the link tells of: {taken} of {all} steps");
+            let text = format!("Computing the run of the link: {taken} of {all} steps");
             if !goes_on {
                 break;
             }
