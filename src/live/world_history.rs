@@ -178,7 +178,7 @@ impl WorldHistory {
     /// Changes the world by hand. Later records are removed.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
-            return Err(Error::value("state", failure, "one that the run can go on from"));
+            return Err(Error::value("state", failure, "one from which the run can continue"));
         }
         self.simulation.edit(&edit)?;
         self.record.edited(&self.simulation, edit);

@@ -1,12 +1,12 @@
-//! Alarms in words.
+//! The texts of alarms.
 
 use crate::app::budget::{FAST, USUAL_OVERLAP};
 use crate::app::watched_run::WatchedRun;
 use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::{AlarmKind, Settings};
 
-/// The alarms of the selected world, then those of others with their titles; in each, those of the present settings
-/// before earlier ones, the newest first.
+/// Alarms of the selected world, then those of the other worlds with their titles. Within a world, alarms of the
+/// present settings come first, then earlier ones, the newest first.
 pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     let of_world = |index: usize| {
         let world = &run.frame.worlds[index];
@@ -24,15 +24,15 @@ pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
-/// True for an alarm about something that was chosen, or that nearly every run shows: unsolved steps under Fast without
-/// cohesion (with cohesion they break bonds), and overlap up to [`USUAL_OVERLAP`].
+/// True for an alarm that follows from a choice of the user, or that nearly every run shows: unsolved steps under Fast
+/// without cohesion (with cohesion they break bonds), and overlap up to [`USUAL_OVERLAP`].
 fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let Settings { parameters, solver, .. } = world.controls.settings;
     match alarm.kind {
         AlarmKind::SweepLimit => {
             solver == FAST.among(&world.snapshot.surroundings) && parameters.bond == 0.0
         }
-        // An overlap that has passed since stays a reason for the alarm.
+        // The alarm stays when the overlap has gone.
         AlarmKind::Overlap => {
             let now = &world.snapshot.observables;
             let mut rows = world.curve.rows().chain([now]);

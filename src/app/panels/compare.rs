@@ -14,7 +14,7 @@ use crate::world::{FrictionCone, Parameters};
 
 /// The paper's time steps, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
-/// Most worlds side by side.
+/// Largest number of worlds side by side.
 const MOST_WORLDS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
@@ -48,11 +48,11 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// Worlds that one click sets side by side.
+/// A preset: worlds that one click sets side by side.
 struct LineUp {
     name: &'static str,
     hint: &'static str,
-    /// Made of [`base`].
+    /// Makes the worlds from the settings of [`base`].
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
@@ -118,15 +118,15 @@ const LINE_UPS: [LineUp; 7] = [
     },
 ];
 
-/// With another stepper, and with nothing that it does not take.
+/// Switches to another stepper, and switches off remedies and settings that it does not take.
 fn stepped(base: Settings, stepper: Stepper) -> Settings {
     let mut settings = Settings { stepper, ..base };
     settings.parameters.cone = FrictionCone::Shifted;
     settings.with_only_what_is_taken()
 }
 
-/// The settings that presets vary: those of the scene, with the stepper and the parameters that all worlds share. The
-/// solver, remedies and touch tolerance of a comparison before would act without a word.
+/// Base settings of the presets: those of the scene, with the stepper and the parameters that all worlds share. The
+/// solver, remedies and touch tolerance of the previous comparison do not count, because the user would not see them.
 fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
     let mut base = *scene;
     let physics = Parameters::ABOUT.iter().filter(|about| about.name != "touch-tolerance");
@@ -154,11 +154,11 @@ fn presets(ui: &mut Ui, run: &mut WatchedRun) {
     });
 }
 
-/// One world's row. True if it is to be removed.
+/// Shows the row of one world. Returns true if the user removes it.
 fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {
-        // Names are words on the panel's ground; the colour alone would not always be readable.
+        // A world's name is in the text colour, because its own colour would not always be readable.
         let colour = theme::world_colour(index, ui.visuals().dark_mode);
         ui.label(RichText::new("■").color(colour));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -1,4 +1,4 @@
-//! Panel: runs that are saved and opened, and the recording as files for other programs.
+//! Panel: saving and opening runs, and exporting a recording for other programs.
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 
@@ -50,7 +50,7 @@ fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The field for a file that is opened.
+/// Shows the field for a file to be opened.
 fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on \
@@ -74,7 +74,7 @@ fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// What is to be exported.
+/// Shows the choices of an export.
 fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     stretch(ui, context);
     let choices = &mut context.preferences.data;
@@ -94,7 +94,7 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
             let mut is_wanted = was_wanted;
             let is_built = check_format(format);
             let check = egui::Checkbox::new(&mut is_wanted, name);
-            // What this build has not may still be taken away.
+            // A format that this build lacks can still be deselected.
             let is_enabled = is_built.is_ok() || was_wanted;
             let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(hint);
             if let Err(refusal) = is_built {
@@ -120,7 +120,7 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// What a format is for.
+/// Name and use of a format.
 fn words(format: FormatName) -> (&'static str, &'static str) {
     match format {
         FormatName::Parquet => ("Parquet", "For pandas, polars and their like."),
@@ -131,7 +131,7 @@ fn words(format: FormatName) -> (&'static str, &'static str) {
     }
 }
 
-/// Which part of the recording.
+/// Shows the choice of an interval of the recording.
 fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let (first, last) = (world.recorded_from_secs, world.recorded_secs);
@@ -162,7 +162,7 @@ fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The button that starts an export, or how far it is.
+/// Shows the button that starts an export, or its progress.
 fn export(ui: &mut Ui, context: &mut PanelContext<'_>, is_ready: bool) {
     if let Some(export) = &context.exports.data.export {
         return export.show(ui, "Exporting data", "Stop export", "Frames that are written stay.");

@@ -1,4 +1,4 @@
-//! The front: release, again, the pace, the timeline, and the four sliders that everything is about.
+//! The main controls: release, again, the pace, the timeline, and the sliders for Bond, Δt, ρ and μ.
 
 use egui::{Button, ComboBox, RichText, Slider, Ui};
 
@@ -8,7 +8,7 @@ use crate::app::context::PanelContext;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
 
-/// Paces that are offered, simulated time per time on the wall.
+/// Paces that are offered: simulated time per wall-clock time.
 const PACES: [f64; 7] = [0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
 /// Least width of a slider with its number, points.
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The one button that nobody can miss.
+/// Shows the most important button: release, pause or play.
 fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let frame = &context.run.frame;
     let failed = frame.worlds.iter().any(|world| world.failure.is_some());
@@ -70,7 +70,7 @@ fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     context.note_control("release", response.rect);
 }
 
-/// How fast time passes.
+/// Shows the list of paces.
 fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let preferences = &mut context.preferences;
     let before = preferences.pace();
@@ -97,7 +97,7 @@ fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The next slower or faster pace; nothing is faster than all that the machine can.
+/// Changes to the next slower or faster pace. The fastest is the full speed of the machine.
 pub(crate) fn change_pace(context: &mut PanelContext<'_>, is_faster: bool) {
     let now = context.preferences.speed;
     let mut paces = PACES.into_iter();
@@ -136,7 +136,7 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The sliders of what the scene has of them, side by side.
+/// Shows the main sliders that the scene has, side by side.
 fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some((before, start)) = context.run.wanted_and_start() else { return };
     let (index, mut settings) = (context.run.selected, before);
@@ -159,7 +159,7 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
         true if context.preferences.starts_again => context.run.draft = Some((index, settings)),
         true => {
             context.run.change(index, settings);
-            // In a lesson the effect of a change on a pile at rest is to be seen.
+            // In a lesson the change must act on a pile at rest.
             if context.touring && !context.run.frame.at_start() {
                 context.run.live.send(Command::Play);
             }
@@ -171,7 +171,7 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// A warning of a time step that is too long, or a sentence on what the sliders do.
+/// Shows a warning if the time step is too long, otherwise a hint on the sliders.
 fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let settings = world.controls.settings;
@@ -191,6 +191,6 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     ui.add(egui::Label::new(RichText::new(text).small().weak()).truncate()).on_hover_text(text);
 }
 
-/// What is true of a value that changes while time passes.
+/// Hint on a value that is changed while time passes.
 const LIVE: &str = "A new value acts from the next step on. Bonds that hold stay as they are; a longer Δt in mid-fall presses \
                     fast grains into one another.";

@@ -32,10 +32,10 @@ const MOUSE: [(&str, &str); 9] = [
     ("Shift drag a wall", "draw it along while time passes"),
 ];
 
-/// Height of what is around the text, points.
+/// Height of the overlay's frame and title, points.
 const FRAME: f32 = 70.0;
 
-/// Shows the overlay where it is wanted.
+/// Shows the overlay if it is open.
 pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
     if !*is_open {
         return;
@@ -47,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
         .open(is_open)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(440.0);
-            // On a low window the end is within reach, too.
+            // In a low window the text can be scrolled.
             let room = ui.ctx().content_rect().height() - FRAME;
             egui::ScrollArea::vertical().max_height(room).show(ui, contents);
         });

@@ -1,4 +1,4 @@
-//! Panel: the stepper with its contact law, the numbers that are not at the front, and what all of them mean together.
+//! Panel: the stepper with its contact law, the parameters that have no main slider, and quantities derived from them.
 
 use egui::{RichText, Ui};
 
@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     derived(ui, run, &settings);
 }
 
-/// The ways to step; remedies that the chosen one does not take are left out.
+/// Shows the choice of the stepper. Remedies that the new stepper does not take are switched off.
 fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     let before = settings.stepper;
     ui.horizontal(|ui| {
@@ -50,7 +50,7 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     }
 }
 
-/// What the numbers mean together.
+/// Shows the derived quantities.
 fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
     let parameters = &settings.parameters;
     let Some(world) = run.world() else { return };

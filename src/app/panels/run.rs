@@ -1,4 +1,4 @@
-//! Panel: which scene and how many grains; the runs before; and what makes the run again.
+//! Panel: the scene and the number of grains, the earlier runs, and the command line.
 
 use egui::{Align, Button, RichText, Ui};
 
@@ -12,17 +12,17 @@ use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES};
 
-/// Most grains that the panel offers; the command line takes more.
+/// Largest number of grains that the panel offers. The command line takes more.
 const MOST_GRAINS: usize = 20_000;
 
-/// Piles of that many grains cost enough to say so, and what was measured of just as many (`docs/runs.md`, new piles),
-/// s of one core.
+/// Number of grains from which the panel states the cost of a pile. The cost was measured at this number
+/// (`docs/runs.md`, new piles), s of one core.
 const LARGE: usize = 2_000;
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;
-/// A solved step of that many grains that slump, ms.
+/// Time of a solved step of a slumping pile with [`LARGE`] grains, ms.
 const STEP_MILLIS: f64 = 60.0;
-/// How the grains of a new pile are put in place.
+/// Methods of deposition, with their names and hints.
 const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     (
         Deposition::Rain,
@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Ga
     }
 }
 
-/// What makes the run again without a window.
+/// Shows the buttons that copy a command line or a link.
 pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let copy = ui.button("Copy command line").on_hover_text(
@@ -92,7 +92,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
     }
 }
 
-/// What is typed for a new pile.
+/// Shows the fields of a new pile.
 fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let id = egui::Id::unique("new pile");
     let typed = ui.data(|data| data.get_temp::<NewPile>(id));
@@ -102,7 +102,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let grains = egui::DragValue::new(&mut pile.grains).range(1..=MOST_GRAINS).speed(2.0);
         let grains = ui.add(grains).labelled_by(label.id);
         if grains.on_hover_text("Number of grains of a new pile.").changed() {
-            // In a box of this width so many grains make a pile as steep as the paper's.
+            // In a box of this width, this number of grains makes a pile as steep as the paper's.
             let paper = NewPile::default();
             let scale = (pile.grains as f64 / paper.grains as f64).sqrt();
             pile.box_width_in_diameters = (paper.box_width_in_diameters * scale).round();
@@ -136,9 +136,9 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.data_mut(|data| data.insert_temp(id, pile));
 }
 
-/// What a large pile costs before it can be released, and how it is stepped then.
+/// Text on the cost of a large pile before its release, and of its steps afterwards.
 fn cost(grains: usize) -> String {
-    // Rain's steps are as many as its fall takes, which goes with the root of the height.
+    // The steps of a rain last as long as its fall, which grows as the root of the height.
     let part = grains as f64 / LARGE as f64;
     let minutes = (RAIN_SECS * part.powf(1.25) / 60.0).ceil();
     let secs = ROLL_SECS * part.powf(1.8);
@@ -149,7 +149,7 @@ fn cost(grains: usize) -> String {
     )
 }
 
-/// A new pile with the numbers that the controls show.
+/// Configuration of a new pile with the present settings.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     let config = run.config();
     let &NewPile { grains, seed, box_width_in_diameters, deposition } = pile;
@@ -169,10 +169,10 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     }
 }
 
-/// Width of the fields of names, points.
+/// Width of the name fields, points.
 const NAME_WIDTH: f32 = 84.0;
 
-/// Earlier runs, to be gone back to, and the newest of them as a ghost; nothing where there are none.
+/// Shows the earlier runs, if there are any: a button for each, and a box that shows the newest as a ghost.
 pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if context.run.frame.past.is_empty() {
         return;
@@ -213,7 +213,8 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The field that names a run. What is typed is kept here until the field is left: a name comes back a step later.
+/// The field for the name of a run. It stores the typed text until it loses the focus, because the name returns from
+/// the solver thread a step later.
 fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &str) {
     let id = egui::Id::unique(("name of run", number));
     let typed = ui.data(|data| data.get_temp(id));
@@ -233,7 +234,7 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     response.on_hover_text("What to call it; sessions keep the name.");
 }
 
-/// What its worlds were.
+/// Title of an earlier run, from its worlds.
 fn title(run: &PastRun) -> String {
     let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
     let first = title_among(&controls, 0);

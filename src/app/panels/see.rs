@@ -1,4 +1,4 @@
-//! Panel: how the scene is drawn, and pictures and films of it.
+//! Panel: the look of the scene, and saving pictures and films.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ use crate::film::{Animation, VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
 
-/// What grains can be coloured by, as the panel calls it.
+/// Choices of the colours of grains, with their names.
 const COLOURS: [(ColourBy, &str); 5] = [
     (ColourBy::PaperGreys, "paper greys"),
     (ColourBy::Speed, "speed"),
@@ -69,7 +69,7 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
     });
 }
 
-/// What saves pictures and films.
+/// Shows the controls that save pictures and films.
 pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let label = ui.label("Picture").on_hover_text("Size of saved pictures, pixels.");
@@ -93,7 +93,7 @@ pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
     films(ui, context);
 }
 
-/// The record as a video or an animation.
+/// Shows the buttons that save the recording as a video or an animation.
 fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if let Some((format, work)) = &context.exports.film {
         let name = format.name();
@@ -119,7 +119,7 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
             (FilmFormat::Video, "Save video", missing, video_hint),
             (FilmFormat::Gif, "Save GIF", None, gif_hint),
         ];
-        // A page has no ffmpeg.
+        // A browser has no ffmpeg.
         for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IN_BROWSER)) {
             let save = ui.add_enabled(context.run.is_ready() && missing.is_none(), egui::Button::new(name));
             context.note_control(name, save.rect);
@@ -134,7 +134,7 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Where all files go that the window writes.
+/// Shows the field for the folder of all files.
 pub(super) fn folder(ui: &mut Ui, folder: &mut PathBuf) {
     ui.horizontal(|ui| {
         let whole = std::path::absolute(&*folder).unwrap_or_else(|_| folder.clone());
@@ -144,7 +144,7 @@ pub(super) fn folder(ui: &mut Ui, folder: &mut PathBuf) {
     });
 }
 
-/// The field of a folder that is typed.
+/// Shows a field for a folder.
 pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
     let mut typed = folder.display().to_string();
     let edit = egui::TextEdit::singleline(&mut typed).desired_width(f32::INFINITY);
@@ -153,7 +153,7 @@ pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
     }
 }
 
-/// Saves the worlds as they are seen, in the size of the preferences.
+/// Saves the worlds as they are visible, in the size that the preferences give.
 pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) {
     if context.run.frame.worlds.is_empty() {
         return;
@@ -168,9 +168,9 @@ pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) 
     });
 }
 
-/// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
+/// Saves the recording of all worlds as a film, within the interval that data exports use.
 fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFormat) {
-    // Its scales are those of all its pictures.
+    // The range of the colour scale is that of all pictures of the film.
     let style = own_style(context.preferences, gui.theme() == egui::Theme::Dark);
     let (size, rate_hz) = (context.preferences.picture_size, context.preferences.video_rate_hz);
     let (size, rate_hz) = match format {
@@ -192,7 +192,7 @@ fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFo
     context.exports.film = Some((format, work));
 }
 
-/// What is seen of the worlds, of which there is one at least.
+/// Picture of the visible worlds; there is at least one.
 fn scene_picture(
     context: &PanelContext<'_>,
     style: Style,
@@ -210,7 +210,7 @@ fn scene_picture(
     };
     let camera = context.camera.for_picture(context.run.view(), &of_one, size_of_one, window);
     let worlds = context.run.frame.worlds.iter().enumerate().map(|(index, world)| {
-        // What came of a world, and below it what came of others.
+        // The note below a world: its slump, and below it the slump of other piles.
         let others = context.ensemble.said_in_short(&context.run.frame, index);
         let others = others.map_or(String::new(), |text| format!("\n{text}"));
         PicturedWorld {

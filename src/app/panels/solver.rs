@@ -1,4 +1,4 @@
-//! Panel: how each step is solved, and how well that went.
+//! Panel: the solver, and the result of the last step.
 
 use egui::{CollapsingHeader, ComboBox, RichText, Ui};
 
@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// What few need to touch.
+/// Shows controls that few users need.
 fn expert(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
     let stepper = settings.stepper;
     if stepper.uses_method() {
@@ -47,13 +47,13 @@ fn expert(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: 
     }
 }
 
-/// The declaration of a setting of the solver.
+/// Declaration of a setting of the solver.
 fn about(name: &str) -> &'static About {
     let found = SolverSettings::ABOUT.iter().find(|about| about.name == name);
     found.unwrap_or(&SolverSettings::ABOUT[0])
 }
 
-/// How a step's problem is solved, and when that is done.
+/// Shows the solver, its stopping test and its tolerance.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         method_box(ui, &mut settings.solver);
@@ -78,8 +78,7 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     setting_control::show(ui, about("max-sweeps"), settings, start);
 }
 
-/// Shows the method, and all others to be chosen from; a model of friction that the chosen one does not take is left
-/// out.
+/// Shows the list of solvers. A friction model that the chosen solver does not take is replaced.
 fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
     let label = ui.label("Method").on_hover_text("The solver that finds the impulses of a step.");
     let mut method = solver.method;
@@ -96,7 +95,7 @@ fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
     }
 }
 
-/// What is asked of friction. A method that solves Coulomb's law alone leaves no choice.
+/// Shows the friction model. A solver of Coulomb friction only leaves no choice.
 fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     let method = settings.solver.method.info();
     let model = about("friction-model");
@@ -110,7 +109,7 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     }
 }
 
-/// Known remedies for known failures, those enabled that the stepper takes.
+/// Shows the remedies; those that the stepper does not take are disabled.
 fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     for (about, remedy) in Remedies::ABOUT.iter().zip(&REMEDIES) {
         let taken = remedy.taken_by.contains(&settings.stepper);
@@ -123,7 +122,7 @@ fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     }
 }
 
-/// Care and speed, one click away.
+/// Shows the buttons of the solver presets.
 fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundings) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -144,7 +143,7 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
     });
 }
 
-/// The common residual, and that of the model of friction where there is one.
+/// Common residual and, if the last step used another friction model, its residual, with a hint.
 fn residuals(last: &Observables) -> (String, &'static str) {
     let common = format!("{:.1e}", last.residual);
     match last.model_residual.filter(|_| last.is_of_a_model()) {
@@ -157,7 +156,7 @@ fn residuals(last: &Observables) -> (String, &'static str) {
     }
 }
 
-/// What the last step needed.
+/// Shows measures of the last step.
 fn readings(ui: &mut Ui, run: &WatchedRun) {
     let Some(world) = run.world() else { return };
     let (last, settings) = (&world.snapshot.observables, &world.controls.settings);
@@ -199,13 +198,13 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
     }
 }
 
-/// About how far velocities are off, rounded up.
+/// Text on the estimated velocity error of a step, rounded up.
 fn within(last: &Observables) -> String {
     let rounded_up = (1e5 * last.velocity_error).ceil().max(1.0) / 100.0;
     format!("velocities off by some {} mm/s", compact(rounded_up))
 }
 
-/// How the last step was solved; the status bar counts those that were not solved as asked.
+/// Shows whether the last step was solved. The status bar counts the steps that were not.
 fn solved(ui: &mut Ui, world: &WorldFrame) {
     let last = &world.snapshot.observables;
     let dark = ui.visuals().dark_mode;

@@ -1,5 +1,5 @@
-//! Panel: where the time of the next steps goes, and how long methods take to solve the step that is shown how well. Each
-//! solves it to one tolerance after the other, on a thread of its own.
+//! Panel: the time that parts of a step take, and a comparison of all solvers on the visible step. Each solver solves
+//! the step to one tolerance after another, on a thread of its own.
 
 use std::sync::OnceLock;
 
@@ -19,41 +19,41 @@ use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
 /// Tolerances of the residual, from loose to tight.
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// A method that takes longer for a step, s, has no tighter one.
+/// Time limit, s. A solver that takes longer for a step is not asked for tighter tolerances.
 const LIMIT_SECS: f64 = 0.25;
-/// Times a step is taken, of which the shortest counts.
+/// Number of repeats of a step. The shortest time counts.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
-/// Steps whose times are added up, at most, and how long that may take, s.
+/// Largest number of steps whose times are added, and time limit for them, s.
 const TIMED_STEPS: u32 = 50;
 const TIMED_SECS: f64 = 1.0;
 
-/// What a method came to.
+/// Result of one solver.
 struct RaceCurve {
     method: &'static str,
     /// Time of the step (ms) and its residual, from loose to tight.
     points: Vec<[f64; 2]>,
 }
 
-/// A race on one step.
+/// A comparison of solvers on one step.
 pub(super) struct StepRace {
-    /// The step that they solve: simulated time, s.
+    /// Simulated time of the step, s.
     time_secs: f64,
-    /// What was measured, once all of it is.
+    /// Results, once all solvers are finished.
     measured: Measured,
     work: Option<Work<Measured>>,
 }
 
-/// What was measured of the steps that follow a moment.
+/// Measured times of the steps after a moment.
 #[derive(Default)]
 struct Measured {
-    /// What so many of them took.
+    /// Number of measured steps and the sum of their times.
     times: Option<(u32, StepTimes)>,
-    /// What methods came to; none of a stepper that has no method.
+    /// Results of the solvers. Empty for a stepper without a solver.
     curves: Vec<RaceCurve>,
 }
 
-/// Has all methods solve the step that follows the moment of a run, where it was not given up before that came.
+/// Measures all solvers on the step after the visible moment. `run` is `None` if the user cancelled before it arrived.
 fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     let Some(run) = run else { return Ok(Measured::default()) };
     let simulation = &run.world.simulation;
@@ -66,7 +66,7 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
         for tolerance in TOLERANCES {
             let point = timed(simulation, info.method, tolerance, goes_on);
             let Some([ms, residual]) = point else { break };
-            // A method that comes no further has nothing more to show.
+            // A point that does not reduce the residual shows nothing new.
             if points.last().is_none_or(|&[_, before]| residual < before) {
                 points.push([ms, residual]);
             }
@@ -84,7 +84,7 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     Ok(Measured { times, curves })
 }
 
-/// What the next steps take, as they are set; nothing where none can be taken.
+/// Number of the next steps and the sum of their times, with the present settings. `None` if the run cannot continue.
 fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     let (mut steps, mut sum) = (0, StepTimes::default());
     while steps < TIMED_STEPS && sum.total_secs < TIMED_SECS {
@@ -97,13 +97,13 @@ fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     (steps > 0 && sum.total_secs > 0.0).then_some((steps, sum))
 }
 
-/// s since it was first asked.
+/// Time since the first call, s.
 fn now_secs() -> f64 {
     static BEGUN: OnceLock<Instant> = OnceLock::new();
     BEGUN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Says where the time went.
+/// Text on the times of a step.
 fn told(&(steps, times): &(u32, StepTimes)) -> String {
     let part = |secs: f64| 100.0 * secs / times.total_secs;
     let (contacts, solving) = (part(times.detection_secs), part(times.solving_secs));
@@ -115,7 +115,7 @@ fn told(&(steps, times): &(u32, StepTimes)) -> String {
     )
 }
 
-/// The least time of the step, ms, and its residual; nothing where it cannot be taken so.
+/// Shortest time of the step, ms, and its residual. `None` if the solver cannot take the step.
 fn timed(
     simulation: &Simulation,
     method: Method,
@@ -149,7 +149,7 @@ fn timed(
 
 /// Height of the plot, points.
 const HEIGHT: f32 = 230.0;
-/// Colours before dashes tell curves apart.
+/// Number of colours. Further curves repeat them with other line styles.
 const COLOURS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
@@ -179,7 +179,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     ui.label(RichText::new(text).small().weak());
 }
 
-/// The button that measures the step that is shown.
+/// Shows the button that measures the visible step.
 fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     let goes_on = |world: &&WorldFrame| world.failure.is_none();
     let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
@@ -197,7 +197,7 @@ fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     }
 }
 
-/// Where the present method is on the chart of its own step: the run's own mean time, once it is at that step.
+/// Place of the present solver on the chart: the run's own mean time, while it is at that step.
 fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
     let world = run.world()?;
     let row = &world.snapshot.observables;
@@ -231,7 +231,7 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
         });
 }
 
-/// Colour and stroke of a curve, which no other one has, and the sign of the stroke.
+/// Colour and line style of a curve, different for all curves, and a sign for the line style.
 fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     let (style, sign) = match index / COLOURS {
         0 => (LineStyle::Solid, "━"),
@@ -241,7 +241,7 @@ fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     (theme::world_colour(index % COLOURS, dark), style, sign)
 }
 
-/// What colours and strokes mean, below the chart, of which it hides nothing.
+/// Shows the key of colours and line styles below the chart, where it hides nothing.
 fn legend(ui: &mut Ui, curves: &[RaceCurve]) {
     let dark = ui.visuals().dark_mode;
     ui.horizontal_wrapped(|ui| {
@@ -263,7 +263,7 @@ mod tests {
     #[test]
     fn tighter_tolerances_come_to_smaller_residuals() {
         let mut scene = built_in("pile").unwrap();
-        // So that the step has a solution.
+        // With this threshold the step has a solution.
         scene.parameters.restitution_threshold = 2.0;
         let mut simulation = scene.simulation().unwrap();
         simulation.take_steps(20).unwrap();

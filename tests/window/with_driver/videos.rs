@@ -114,7 +114,7 @@ fn an_animation_that_is_stopped_leaves_nothing() {
     robot.take_steps(300);
     robot.state_mut().preferences.speed = 0.01;
     robot.clicks(&["Save GIF", "Stop GIF"]);
-    assert_eq!(robot.written(), "Stopped: there is no GIF");
+    assert_eq!(robot.written(), "Stopped: no GIF is saved");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }
 
@@ -182,7 +182,7 @@ mod with_ffmpeg {
         robot.take_steps(3);
         assert!(robot.state().is_writing() && robot.steps() == before + 3, "the run goes on");
         robot.click("Stop video");
-        assert_eq!(robot.written(), "Stopped: there is no video");
+        assert_eq!(robot.written(), "Stopped: no video is saved");
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
         assert!(robot.harness.query_by_label("Save video").is_some(), "another can be asked for");
     }
