@@ -34,7 +34,7 @@ pub enum ChartPart {
     Solutions,
 }
 
-/// What to chart, and how.
+/// Options of a chart.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChartOptions {
     /// Folder for pictures, tables and measurements; the same command continues where it stopped
