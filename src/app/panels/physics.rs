@@ -32,7 +32,7 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     let before = settings.stepper;
     ui.horizontal(|ui| {
         ui.label("Stepper")
-            .on_hover_text("The scheme that advances the grains by Δt, with its contact law.");
+            .on_hover_text("The rule that advances the grains by Δt, with its contact law.");
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().button_padding.x = 5.0;
         for &stepper in Stepper::ALL {

@@ -30,7 +30,7 @@ pub enum ChartPart {
     Simulation,
     /// Error against the time of a step, for 138 to 10,000 grains
     Size,
-    /// How many solutions steps have, and how far apart they are
+    /// Number of solutions of a step, and their distances
     Solutions,
 }
 
