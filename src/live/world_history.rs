@@ -47,7 +47,7 @@ impl WorldHistory {
         budget_bytes: usize,
     ) -> Self {
         let mut simulation = start.clone();
-        // Settings are checked where they are made. If one is refused here, the start's setting stays.
+        // Settings are checked when they are made. If one is refused here, the start's setting stays.
         let _ = simulation.change(*settings);
         let mut curve = Curve::default();
         curve.push(*simulation.observables());

@@ -75,7 +75,7 @@ fn long_names_do_not_widen_the_panel() {
     let mut robot = Robot::open(pile());
     robot.click("Compare");
     let before = robot.state().controls["Pile"].left();
-    for line_up in ["Methods", "Two laws", "Friction", "Steppers"] {
+    for line_up in ["Solvers", "Two laws", "Friction", "Steppers"] {
         robot.click(line_up);
         robot.frames(10);
         let now = robot.state().controls["Pile"].left();
@@ -157,7 +157,7 @@ fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
     let by_hand = by_hand.count();
     assert!(by_hand > 0 && robot.shows(&format!("{by_hand} of 138")));
     type_filter(&mut robot, "n = many");
-    assert!(robot.shows("“n = many” is no comparison of grain, x, y, speed, overlap, force, n"));
+    assert!(robot.shows("“n = many” is not a comparison of grain, x, y, speed, overlap, force, n"));
 
     robot.click("Contacts");
     let contacts = robot.world().snapshot.contacts.clone();
@@ -319,7 +319,7 @@ fn symbols_and_ordinals_are_written_as_one_reads_them() {
     });
     robot.send(Command::Pause);
     words_are_as_one_reads_them(&mut robot);
-    assert!(robot.shows("plotted: a step every "), "the situation");
+    assert!(robot.shows("plotted: one step every "), "the situation");
 }
 
 #[test]

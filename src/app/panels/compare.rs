@@ -19,7 +19,7 @@ const MOST_WORLDS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let text = "Worlds from one initial state, kept at the same simulated time.";
-    let hint = "A preset keeps the stepper and the numbers that all worlds share. It solves steps as the scene does.";
+    let hint = "A preset keeps the stepper and the parameters that all worlds share. It uses the scene's solver.";
     ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
     presets(ui, run);
     let before: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
@@ -31,10 +31,10 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let rows: Vec<_> = rows.collect();
     ui.horizontal(|ui| {
         let add = ui.add_enabled(all.len() < MOST_WORLDS, Button::new("Add"));
-        if add.on_hover_text("One more like the selected one.").clicked() {
+        if add.on_hover_text("Add a world with the settings of the selected one.").clicked() {
             all.push(all[run.selected]);
         }
-        let hint = "Go on with the selected world alone, from the start.";
+        let hint = "Keep only the selected world and start it again.";
         if compares && ui.button("One world").on_hover_text(hint).clicked() {
             all = vec![all[run.selected]];
         }
@@ -87,8 +87,8 @@ const LINE_UPS: [LineUp; 7] = [
         worlds: |base| [0.0, 20.0, 50.0, 100.0].map(|bond| base.with_bond(bond)).into(),
     },
     LineUp {
-        name: "Methods",
-        hint: "As many methods as there is room for, on the same problem.",
+        name: "Solvers",
+        hint: "As many solvers as there is room for, on the same problem.",
         worlds: |base| {
             let by = |info: &MethodInfo| Settings { solver: base.solver.by(info.method), ..base };
             METHODS.iter().take(MOST_WORLDS).map(by).collect()
@@ -96,7 +96,7 @@ const LINE_UPS: [LineUp; 7] = [
     },
     LineUp {
         name: "Friction",
-        hint: "Every model of friction, and tresca solved four times a step, by nsgs.",
+        hint: "All friction models, solved by nsgs, and tresca with four solves per step.",
         worlds: |base| {
             let base = stepped(base, Stepper::Moreau);
             let by = |friction_model, model_solves| {
@@ -110,7 +110,7 @@ const LINE_UPS: [LineUp; 7] = [
     },
     LineUp {
         name: "Steppers",
-        hint: "As many ways to step as there is room for, from the same state.",
+        hint: "As many steppers as there is room for, from the same initial state.",
         worlds: |base| {
             let by = |&stepper: &Stepper| stepped(base, stepper);
             Stepper::ALL.iter().take(MOST_WORLDS).map(by).collect()
@@ -167,7 +167,9 @@ fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.with_layout(left, |ui| {
                 let chosen = Button::selectable(run.selected == index, name.as_str());
-                let hint = format!("{name}\nSliders, Law and solver are about this world.");
+                let hint = format!(
+                    "{name}\nClick it: the sliders and Law, solver then change this world."
+                );
                 if ui.add(chosen.truncate()).on_hover_text(hint).clicked() {
                     run.selected = index;
                 }

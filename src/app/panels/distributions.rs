@@ -32,7 +32,7 @@ pub(super) struct Distributions {
 const HEIGHT: f32 = 150.0;
 /// Histograms: name in files, text of the button, text of the axis.
 const ALL: [(&str, &str, &str); 4] = [
-    ("normal_force", "forces", "N over the mean |N| of contacts that bear a force"),
+    ("normal_force", "forces", "N divided by the mean |N| of contacts with a force"),
     ("contact_orientation", "directions", "direction of normals, degrees from the x axis"),
     ("coordination", "contacts", "contacts of a grain"),
     ("overlap", "overlaps", "log₁₀ of the overlap in mean diameters"),
@@ -65,7 +65,8 @@ impl Distributions {
                 plot.bar_chart(BarChart::new(name, bars).color(colour));
             });
         let total: u64 = histogram.counts.iter().sum();
-        let text = format!("{about}: {total} in all. Outer bars hold what lies beyond.");
+        let text =
+            format!("{about}: {total} in all. The outer bars include all values beyond them.");
         ui.label(RichText::new(text).small().weak());
     }
 

@@ -18,7 +18,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.add_enabled_ui(context.run.is_ready(), |ui| {
         ui.horizontal(|ui| {
             release_button(ui, context);
-            let hint = "Back to the start, with the present settings (R)";
+            let hint = "Start again with the present settings (R)";
             let again = ui.add(Button::new("⟲ Again").min_size(egui::vec2(0.0, 30.0)));
             if again.on_hover_text(hint).clicked() {
                 context.run.live.send(Command::Reset);
@@ -29,8 +29,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.add_space(2.0);
         sliders(ui, context);
         ui.horizontal(|ui| {
-            let hint = "On: when a slider is let go, the pile starts again with its new value, and the run before stays as a \
-                        ghost. Off: the new value acts from the next step on.";
+            let hint = "On: when you let go of a slider, the pile starts again with the new value, and the earlier \
+                        run stays as a ghost. Off: the new value acts from the next step on.";
             let name = "start again when I move a slider";
             let switch = ui.checkbox(&mut context.preferences.starts_again, name);
             context.note_control("start again", switch.on_hover_text(hint).rect);
@@ -46,15 +46,21 @@ fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let (text, hint) = if frame.playing {
         ("❚❚  Pause", "Stop time (space)")
     } else if frame.held() && !frame.replaying {
-        ("▶  Release", "At t = 0 the walls go, and the pile holds or slumps (space)")
+        ("▶  Release", "Remove the walls: the pile holds or slumps (space)")
     } else if frame.branching {
-        ("▶  Go on", "With what was changed; the run so far is kept under Compare (space)")
+        (
+            "▶  Continue",
+            "Continue with the changed settings; the earlier run is kept under Compare (space)",
+        )
     } else if frame.replaying {
-        ("▶  Replay", "Show the record from this moment on; at its end, compute on (space)")
+        (
+            "▶  Replay",
+            "Show the record from this moment on, and continue to compute at its end (space)",
+        )
     } else if frame.at_start() {
         ("▶  Start", "Let time pass (space)")
     } else {
-        ("▶  Play on", "Let time pass again, from the moment that is shown (space)")
+        ("▶  Resume", "Let time pass again from the visible moment (space)")
     };
     let dark = ui.visuals().dark_mode;
     let (fill, ink) = match frame.playing {
@@ -90,7 +96,7 @@ fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let response = shown.response;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Pace"));
     context.note_control("pace", response.rect);
-    response.on_hover_text("Simulated time per time on the wall ([ slower, ] faster)");
+    response.on_hover_text("Simulated time per wall-clock time ([ slower, ] faster)");
     let pace = context.preferences.pace();
     if pace != before {
         context.run.live.send(Command::SetPace(pace));
@@ -131,7 +137,7 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
         }
         context.note_control("timeline", response.rect);
         response.on_hover_text(
-            "The recorded run: drag to any moment, then play on from there; → and ← go a step",
+            "The recorded run: drag to any moment, then continue from there; → and ← move by one step",
         );
     });
 }
@@ -192,5 +198,5 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
 }
 
 /// Hint on a value that is changed while time passes.
-const LIVE: &str = "A new value acts from the next step on. Bonds that hold stay as they are; a longer Δt in mid-fall presses \
-                    fast grains into one another.";
+const LIVE: &str = "A new value acts from the next step on. Bonds that hold stay as they are; a longer Δt in \
+                    mid-fall presses fast grains into one another.";

@@ -16,7 +16,7 @@ use crate::world::{Boundary, Disc, Edge};
 /// Distance at which the mouse catches a wall, points.
 const REACH: f32 = 8.0;
 /// Message for a wall that is drawn while time is paused.
-const STANDS_STILL: &str = "Walls go while time passes: let it (space), and draw on.";
+const STANDS_STILL: &str = "Walls move only while time passes: press space, then drag on.";
 
 /// The grain or the wall that the mouse holds.
 #[derive(Default)]
@@ -308,14 +308,15 @@ fn distance(boundary: &Boundary, point: DVec2) -> f64 {
 pub(super) fn show(ui: &mut Ui, preferences: &mut Preferences) {
     ui.label(
         RichText::new(
-            "With Shift held, a click on the ground puts a grain there, a click on a grain takes it out, and a drag draws \
-             a wall along while time passes. All of it is in the record and in sessions, and in no command line or link.",
+            "With Shift held, a click on the ground adds a grain, a click on a grain removes it, and a drag moves \
+             a wall while time passes. The record and sessions contain these changes; command lines and links do \
+             not.",
         )
         .small()
         .weak(),
     );
     ui.horizontal(|ui| {
-        let hint = "Diameter of a grain that Shift click puts in, in mean diameters.";
+        let hint = "Diameter of a grain that Shift and a click add, in mean diameters.";
         let label = ui.label("New grain").on_hover_text(hint);
         let value = DragValue::new(&mut preferences.new_grain_diameters);
         let value = value

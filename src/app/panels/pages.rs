@@ -30,7 +30,7 @@ impl Pages {
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, page: Page) {
         // The world's number, not its name: a long name would widen the panel.
         if context.run.compares() && matches!(page, Page::Solver | Page::Save) {
-            let text = format!("Of world {}", context.run.selected + 1);
+            let text = format!("For world {}", context.run.selected + 1);
             ui.label(RichText::new(text).strong());
         }
         match page {

@@ -43,7 +43,7 @@ fn figure(ui: &Ui, context: &PanelContext<'_>) -> Option<TimeStepFigure> {
 
 /// Shows the buttons that save or clear the figure, from right to left.
 fn figure_buttons(ui: &mut Ui, context: &mut PanelContext<'_>, figure: &TimeStepFigure) {
-    let hint = "Forget the points, except those of the piles that are shown.";
+    let hint = "Remove the points, except those of the visible piles.";
     let clear = ui.small_button("Clear").on_hover_text(hint);
     context.note_control("clear figure", clear.rect);
     if clear.clicked() {
@@ -136,7 +136,7 @@ fn means_something(run: &WatchedRun, quantity: &Quantity<Observables>) -> bool {
 pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let text = if context.preferences.plots { "▾ Plot" } else { "▸ Plot" };
-        let plots = ui.selectable_label(false, text).on_hover_text("Show or fold the plots");
+        let plots = ui.selectable_label(false, text).on_hover_text("Show or hide the plots");
         context.note_control("Plots", plots.rect);
         context.preferences.plots ^= plots.clicked();
         let hint = context.ensemble.about(context.run.selected);
@@ -175,7 +175,7 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
             }
         }
         ui.toggle_value(&mut context.preferences.chosen_plot.on, "y over x")
-            .on_hover_text("Any quantity that steps measure against any other.");
+            .on_hover_text("Plot any measured quantity against any other.");
     });
     let chosen = &mut context.preferences.chosen_plot;
     if chosen.on {
@@ -207,7 +207,8 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
             Ok(path)
         });
     }
-    let hint = "Save all observables of all worlds; a text beside the table says what they are of.";
+    let hint =
+        "Save all observables of all worlds. A text file next to the table describes the run.";
     if ui.button("Curves as CSV").on_hover_text(hint).clicked() {
         let worlds = context.run.frame.worlds.iter();
         let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
@@ -221,7 +222,7 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let worlds = context.run.frame.worlds.iter();
     let spacing_secs = worlds.map(|world| world.curve.least_spacing_secs()).fold(0.0, f64::max);
     if spacing_secs > 0.0 {
-        let text = format!("plotted: a step every {}", millis_text(spacing_secs));
+        let text = format!("plotted: one step every {}", millis_text(spacing_secs));
         ui.label(RichText::new(text).small().weak());
     }
 }

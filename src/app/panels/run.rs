@@ -27,13 +27,14 @@ const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     (
         Deposition::Rain,
         "Rain",
-        "Grains rain into the box, as in the paper's pile: seconds for hundreds, minutes for thousands.",
+        "Grains rain into the box, as in the paper's pile. This takes seconds for hundreds of grains, minutes for \
+         thousands.",
     ),
     (
         Deposition::DropAndRoll,
         "Roll",
-        "Each grain rolls to where two others hold it: seconds for thousands, but another pile, denser and with \
-            more bonds.",
+        "Each grain rolls until two others hold it. This takes seconds for thousands of grains, but makes another \
+         pile, denser and with more bonds.",
     ),
 ];
 
@@ -48,8 +49,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Ga
 pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let copy = ui.button("Copy command line").on_hover_text(
-            "The command that computes the selected world from its start with the present settings, without a \
-             window and to the last digit.",
+            "Copies the command that computes the selected world from its initial state with the present settings, \
+             without a window and to the last digit.",
         );
         if copy.clicked()
             && let Some(line) = context.run.command_line()
@@ -60,8 +61,8 @@ pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
             }
         }
         let copy = ui.button("Copy link").on_hover_text(
-            "A line of text that opens all worlds as they are now: scene, settings, changes on the way, and the \
-             moment. Paste it into a window (Ctrl V), or give it to slump --open.",
+            "Copies a line of text that opens all worlds as they are now: scene, settings with their changes, and \
+             the visible moment. Paste it into a window (Ctrl V), or pass it to slump --open.",
         );
         if copy.clicked() {
             context.ask(Request::CopyLink);
@@ -80,7 +81,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
         context.run.frame.start.as_ref().map_or("", |start| start.scene.name.as_str()).to_owned();
     ui.horizontal(|ui| {
         let label = ui.label("Scene").on_hover_text(
-            "Drop a TOML scene, a CSV of discs or a saved run on the window to open it.",
+            "To open a TOML scene, a CSV file of discs or a saved run, drop it on the window.",
         );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let list = gallery.show(ui, context, &current).labelled_by(label.id);
@@ -112,7 +113,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.add(width.range(3.0..=1e4).max_decimals(1).suffix(" d").speed(0.5))
             .labelled_by(label.id)
             .on_hover_text(
-                "Width of the box in diameters: with the grains, how high and steep a pile is.",
+                "Width of the box in diameters. With the number of grains it sets how high and steep the pile is.",
             );
     });
     ui.horizontal(|ui| {
@@ -123,7 +124,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         for (way, name, hint) in DEPOSITIONS {
             ui.selectable_value(&mut pile.deposition, way, name).on_hover_text(hint);
         }
-        let fresh = ui.button("New pile").on_hover_text("Make it, and let it come to rest.");
+        let fresh = ui.button("New pile").on_hover_text("Make this pile and let it come to rest.");
         context.note_control("new pile", fresh.rect);
         if fresh.clicked() {
             let config = pile_like_this(context.run, &pile);
@@ -144,8 +145,8 @@ fn cost(grains: usize) -> String {
     let secs = ROLL_SECS * part.powf(1.8);
     let step_millis = STEP_MILLIS * part.powf(1.3);
     format!(
-        "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. A step takes some {step_millis:.0} ms; \
-         under Fast, for piles without cohesion, a fifteenth of that or less."
+        "{grains} grains: rain takes about {minutes:.0} min, rolling {secs:.1} s. A step takes about \
+         {step_millis:.0} ms; with Fast, for piles without cohesion, at most a fifteenth of that."
     )
 }
 
@@ -179,12 +180,12 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     ui.horizontal(|ui| {
         ui.label("Earlier runs").on_hover_text(
-            "What a reset, other worlds, or going on differently from an earlier moment has taken the place of. \
-             The last four are kept.",
+            "Runs that were replaced by a reset, by other worlds, or by a change at an earlier moment. The last \
+             four are kept.",
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.checkbox(&mut context.preferences.ghost, "Ghost")
-                .on_hover_text("Show the last of them: its curves in grey, its grains as outlines.");
+                .on_hover_text("Show the newest earlier run: its curves in grey, its grains as outlines.");
         });
     });
     ui.horizontal(|ui| {
@@ -231,7 +232,7 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     } else {
         ui.data_mut(|data| data.remove::<String>(id));
     }
-    response.on_hover_text("What to call it; sessions keep the name.");
+    response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
 /// Title of an earlier run, from its worlds.

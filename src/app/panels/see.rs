@@ -42,7 +42,7 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
     egui::Grid::new("see").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         ui.checkbox(&mut style.show_forces, "Force chains")
             .on_hover_text("A link a contact, as wide as |N|; blue pushes, orange pulls.");
-        ui.checkbox(&mut style.show_velocities, "Velocities").on_hover_text("An arrow a grain.");
+        ui.checkbox(&mut style.show_velocities, "Velocities").on_hover_text("An arrow per grain.");
         ui.end_row();
         ui.checkbox(&mut style.outlines, "Outlines").on_hover_text("A dark rim around each grain.");
         ui.checkbox(&mut style.angles, "Angles").on_hover_text("A mark that turns with its grain.");
@@ -51,10 +51,10 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
         ui.checkbox(&mut style.legend, "Legend").on_hover_text("What colours and links mean.");
         ui.end_row();
         ui.checkbox(&mut style.show_motions, "Motions").on_hover_text(
-            "Arrows on walls and fixed discs that move; with two heads, a force that drives them.",
+            "Arrows on walls and fixed discs that move. An arrow with two heads is a force that drives them.",
         );
         ui.checkbox(&mut preferences.gravity, "Gravity").on_hover_text(
-            "An arrow where gravity points; it shows by itself where that is not straight down.",
+            "An arrow in the direction of gravity. It is always shown if gravity does not point straight down.",
         );
         ui.end_row();
     });
@@ -83,8 +83,7 @@ pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
         }
         ui.label(RichText::new("px").weak());
         let save = ui.button("Save PNG").on_hover_text(
-            "What is seen here, with all worlds that are compared (S). \
-            The file says which command makes it.",
+            "Saves the scene with all worlds as it is visible (S). The file contains the command that makes it.",
         );
         if save.clicked() {
             save_picture(ui.ctx(), context);
@@ -97,23 +96,23 @@ pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
 fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if let Some((format, work)) = &context.exports.film {
         let name = format.name();
-        let hint = format!("No {name} is left; what was computed stays in the window.");
+        let hint = format!("No {name} is saved; the computed run stays in the window.");
         return work.show(ui, &format!("Making a {name}"), &format!("Stop {name}"), &hint);
     }
     ui.horizontal(|ui| {
-        let hint = "Pictures in a second of a video or a GIF, which has at most 50.";
+        let hint = "Pictures per second of a video or a GIF. A GIF has at most 50.";
         let label = ui.label("Film").on_hover_text(hint);
         let [least, most] = VIDEO_RATES_HZ;
         let rate = egui::DragValue::new(&mut context.preferences.video_rate_hz).range(least..=most);
         ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
-        let pace = format!("at the pace of watching, {}×", context.preferences.speed);
+        let pace = format!("at the pace of the window, {}×", context.preferences.speed);
         ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
-        let video_hint = "What was recorded of all worlds, or the stretch that is named below, as MP4. The run may \
-            go on meanwhile.";
-        let gif_hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and \
-            larger files.";
+        let video_hint = "Saves the record of all worlds, or the interval that is chosen below, as MP4. The run \
+                          can continue meanwhile.";
+        let gif_hint = "Saves the same as a GIF, which all slides and web pages can show: 256 colours per picture, \
+                        and larger files.";
         let missing = check_ffmpeg("given").err();
         let formats = [
             (FilmFormat::Video, "Save video", missing, video_hint),
@@ -138,7 +137,7 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
 pub(super) fn folder(ui: &mut Ui, folder: &mut PathBuf) {
     ui.horizontal(|ui| {
         let whole = std::path::absolute(&*folder).unwrap_or_else(|_| folder.clone());
-        let hint = format!("Where saved files go: {}", whole.display());
+        let hint = format!("Folder of saved files: {}", whole.display());
         let label = ui.label("Folder").on_hover_text(hint);
         path_field(ui, folder, label.id);
     });

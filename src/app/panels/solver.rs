@@ -80,7 +80,7 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 
 /// Shows the list of solvers. A friction model that the chosen solver does not take is replaced.
 fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
-    let label = ui.label("Method").on_hover_text("The solver that finds the impulses of a step.");
+    let label = ui.label("Solver").on_hover_text("The solver that finds the impulses of a step.");
     let mut method = solver.method;
     let list = ComboBox::from_id_salt("method").width(100.0).selected_text(method.name());
     let shown = list.show_ui(ui, |ui| {
@@ -103,7 +103,7 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
         ui.horizontal(|ui| setting_control::show(ui, model, settings, start));
     })
     .response
-    .on_disabled_hover_text(format!("{} solves Coulomb's law alone.", method.name));
+    .on_disabled_hover_text(format!("{} solves only Coulomb friction.", method.name));
     if settings.solver.friction_model.is_taken_anew() {
         setting_control::show(ui, about("model-solves"), settings, start);
     }
@@ -115,10 +115,7 @@ fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
         let taken = remedy.taken_by.contains(&settings.stepper);
         ui.add_enabled_ui(taken, |ui| setting_control::show(ui, about, settings, start))
             .response
-            .on_disabled_hover_text(format!(
-                "Not with {}, which has its own ways.",
-                settings.stepper
-            ));
+            .on_disabled_hover_text(format!("The stepper {} does not take it.", settings.stepper));
     }
 }
 
@@ -134,8 +131,8 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
             }
         }
         let robust = ui.button("Robust").on_hover_text(
-            "Newton to 1e-8, overlap pushed out, shocks in sequence, no bounce below 2 g Δt, fast grains \
-             in pieces of a step: hard scenes hold, and the paper's effects of Δt go.",
+            "Newton to 1e-8. Overlap is pushed out, shocks are solved in sequence, nothing bounces below 2 g Δt, \
+             and fast grains move in parts of a step. Hard scenes hold, and the paper's effects of Δt disappear.",
         );
         if robust.clicked() {
             Preset::Robust.apply_to_settings(settings);
@@ -150,8 +147,8 @@ fn residuals(last: &Observables) -> (String, &'static str) {
         None => (common, "Common residual of the last step."),
         Some(of_model) => (
             format!("{common} ({of_model:.1e})"),
-            "Common residual of the last step, by Coulomb's law; in brackets that of the model of friction that \
-             was solved.",
+            "Common residual of the last step under Coulomb friction; in brackets, the residual of the friction \
+             model that was solved.",
         ),
     }
 }
@@ -171,11 +168,11 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
         ui.end_row();
         if settings.solver.method == Method::Auto {
             let taken = world.picked_method.name();
-            reading(ui, "method", taken.to_owned(), "What auto took for the last step.");
+            reading(ui, "solver", taken.to_owned(), "The solver that auto chose for the last step.");
             ui.end_row();
         }
         reading(ui, "contacts", last.contacts.to_string(), "Contacts of the last step.");
-        reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Mean time of a step, lately.");
+        reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Recent mean time per step.");
         ui.end_row();
         if settings.stepper.reads("substeps") {
             let substeps = world.substeps.to_string();
@@ -185,8 +182,8 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
             ui.end_row();
         }
         if let Some(critical_secs) = world.critical_time_step_secs {
-            let hint = "Substeps up to this length are surely stable; a little longer, and \
-                        crowded grains blow up.";
+            let hint = "Longest substep that is certainly stable. With slightly longer substeps crowded grains \
+                        blow up.";
             reading(ui, "critical", format!("{critical_secs:.1e} s"), hint);
             ui.end_row();
         }
@@ -201,7 +198,7 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
 /// Text on the estimated velocity error of a step, rounded up.
 fn within(last: &Observables) -> String {
     let rounded_up = (1e5 * last.velocity_error).ceil().max(1.0) / 100.0;
-    format!("velocities off by some {} mm/s", compact(rounded_up))
+    format!("velocity error about {} mm/s", compact(rounded_up))
 }
 
 /// Shows whether the last step was solved. The status bar counts the steps that were not.
@@ -214,7 +211,7 @@ fn solved(ui: &mut Ui, world: &WorldFrame) {
     } else if last.converged {
         (mark, colour) = (format!("● converged, {}", within(last)), theme::good(dark));
     } else if last.stalled {
-        mark += &format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual);
+        mark += &format!("▲ stalled: residual {:.0e}, more sweeps do not help", last.residual);
     } else {
         mark += &format!("▲ not converged within {} sweeps, {}", last.sweeps, within(last));
     }

@@ -159,7 +159,9 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
         race.measured = outcome.unwrap_or_default();
     }
     match race.as_ref().and_then(|race| race.work.as_ref()) {
-        Some(work) => work.show(ui, "Measuring", "Stop measuring", "Other methods are left out."),
+        Some(work) => {
+            work.show(ui, "Measuring", "Stop measuring", "Leaves out the remaining solvers.")
+        }
         None => measure(ui, run, race),
     }
     let Some(race) = race.as_ref().filter(|race| race.work.is_none()) else { return };
@@ -173,9 +175,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     draw(ui, curves, now(run, race));
     legend(ui, curves);
     let time_secs = race.time_secs;
-    let text = format!(
-        "The step that follows t = {time_secs:.4} s, measured here; ◆ is the present method."
-    );
+    let text =
+        format!("The step after t = {time_secs:.4} s, measured here; ◆ is the present solver.");
     ui.label(RichText::new(text).small().weak());
 }
 
@@ -184,9 +185,9 @@ fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     let goes_on = |world: &&WorldFrame| world.failure.is_none();
     let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
     let button = ui.add_enabled(time_secs.is_some(), egui::Button::new("Measure this step"));
-    let hint = "Where the time of a step goes; then each method solves the step that is shown, to one tolerance after the \
-                other: some seconds.";
-    let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot go on.");
+    let hint = "Measures the parts of a step. Then each solver solves the visible step, to one tolerance after the \
+                other. This takes some seconds.";
+    let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot continue.");
     if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
         let taken = run.take(run.selected);
         let work = Work::start(ui.ctx(), vec![taken], move |mut runs, reporter| {
@@ -208,7 +209,7 @@ fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
 
 fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
     let dark = ui.visuals().dark_mode;
-    ui.label(RichText::new("residual against ms a step").small());
+    ui.label(RichText::new("residual against ms per step").small());
     let ends = [0, 1].map(|axis| {
         let points = curves.iter().flat_map(|curve| &curve.points);
         with_room(points.map(|point| point[axis].log10()).chain(now.map(|now| now[axis])), true)

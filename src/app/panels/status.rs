@@ -56,11 +56,11 @@ fn pace(ui: &mut Ui, frame: &LiveFrame) {
         ui.label(RichText::new("computing that moment").weak());
     } else if frame.stored && frame.playing {
         ui.label(RichText::new("stored").weak())
-            .on_hover_text("What is recorded is shown as it was; nothing is computed.");
+            .on_hover_text("The record is shown; nothing is computed.");
     } else if frame.playing && frame.steps_per_sec > 0.0 {
         let text = format!("{:.0} steps/s, {:.2}×", frame.steps_per_sec, frame.real_time_factor);
         ui.label(RichText::new(text).weak())
-            .on_hover_text("Steps of all worlds together, and simulated time per time on the wall");
+            .on_hover_text("Steps of all worlds together, and simulated time per wall-clock time");
     }
 }
 

@@ -37,23 +37,23 @@ struct ShownColumn<T> {
 }
 
 const GRAINS: [ShownColumn<GrainView>; 7] = [
-    column("grain", 5, true, "Its number.", |index, _, _| index as f64),
+    column("grain", 5, true, "Number of the grain.", |index, _, _| index as f64),
     column("x", 8, false, "x over d.", |_, grain, d| grain.position.x / d),
     column("y", 8, false, "y over d.", |_, grain, d| grain.position.y / d),
-    column("speed", 8, false, "Of its centre, m/s; 0 where it rests.", |_, grain, _| {
+    column("speed", 8, false, "Speed of the centre, m/s; 0 at rest.", |_, grain, _| {
         unless_at_rest(grain.velocity.length())
     }),
-    column("overlap", 8, false, "The deepest, over d.", |_, grain, d| grain.overlap / d),
+    column("overlap", 8, false, "Deepest overlap over d.", |_, grain, d| grain.overlap / d),
     column("force", 8, false, "Σ|N| over its contacts, N.", |_, grain, _| grain.force),
-    column("n", 2, true, "Its contacts.", |_, grain, _| f64::from(grain.coordination)),
+    column("n", 2, true, "Number of contacts.", |_, grain, _| f64::from(grain.coordination)),
 ];
 
 /// Number that stands for a fixed body.
 const FIXED: f64 = -1.0;
 
 const CONTACTS: [ShownColumn<ContactView>; 7] = [
-    column("grain", 5, true, "Its first grain.", |_, contact, _| f64::from(contact.grain)),
-    column("with", 5, true, "Its second grain; -1 is what is fixed.", |_, contact, _| {
+    column("grain", 5, true, "First grain.", |_, contact, _| f64::from(contact.grain)),
+    column("with", 5, true, "Second grain; -1 is a fixed body.", |_, contact, _| {
         contact.other_grain.map_or(FIXED, f64::from)
     }),
     column("N", 8, false, "Normal force, N; negative pulls.", |_, contact, _| contact.normal_force),
@@ -86,7 +86,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, table: &mut BodyTable) {
         }
         let hint = if table.contacts { "N < 0 and y > 2" } else { "force > 0.01 and y > 2" };
         let label = ui.label("Filter").on_hover_text(
-            "Comparisons of columns with numbers, joined by and. Columns and their units are told by their heads.",
+            "Comparisons of columns with numbers, joined by and. Point at the head of a column to see its meaning \
+             and unit.",
         );
         let field = TextEdit::singleline(&mut table.filter).hint_text(hint);
         ui.add(field.desired_width(f32::INFINITY)).labelled_by(label.id);
@@ -235,7 +236,7 @@ fn read_filter<T>(text: &str, columns: &[ShownColumn<T>]) -> Result<Vec<Comparis
             read(part).ok_or_else(|| {
                 let names: Vec<_> = columns.iter().map(|column| column.name).collect();
                 format!(
-                    "“{part}” is no comparison of {} with a number, by <, <=, =, >= or >.",
+                    "“{part}” is not a comparison of {} with a number by <, <=, =, >= or >.",
                     names.join(", ")
                 )
             })

@@ -144,7 +144,7 @@ mod with_ffmpeg {
         assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
         let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Film");
         assert_eq!(field.accesskit_node().numeric_value(), Some(25.0));
-        assert!(robot.shows("at the pace of watching, 1×"));
+        assert!(robot.shows("at the pace of the window, 1×"));
         robot.state_mut().preferences.video_rate_hz = 50.0;
         robot.state_mut().preferences.speed = 0.1;
         let (slow, _) = film(&mut robot);
