@@ -23,6 +23,7 @@ fn row_of_grains(at: DVec2) -> Snapshot {
         force: 3.0 * f64::from(k),
         coordination: k,
         tone: 205,
+        material: 0,
     };
     let grains: Vec<_> = (0..4).map(grain).collect();
     let contact = |k: usize, normal_force| ContactView {
@@ -44,6 +45,7 @@ fn row_of_grains(at: DVec2) -> Snapshot {
             boundaries: vec![Boundary::HalfSpace { point: at - 1.5 * DVec2::Y, normal: DVec2::Y }],
             centre_of_attraction: Some(at),
             periodic: None,
+            materials: Vec::new(),
             mean_diameter: 1.0,
             gravity_magnitude: 9.8,
             moving: Vec::new(),
