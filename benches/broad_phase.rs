@@ -77,6 +77,8 @@ fn packed(kind: &str, count: usize) -> World {
         motions: Vec::new(),
         gravity_turn: None,
         periodic: None,
+        materials: Vec::new(),
+        pairs: Vec::new(),
         gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
     }
 }

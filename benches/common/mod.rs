@@ -21,7 +21,7 @@ pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProble
     let numbers = ProblemNumbers { time_step_secs, friction, capture_speed, cone };
     let rebound = |approach: Approach| restitution * approach.velocity;
     let mut problem = StepProblem::default();
-    problem.prepare(world, simulation.contacts(), numbers, settings, rebound, None);
+    problem.prepare(world, simulation.contacts(), numbers, settings, rebound, None, None);
     problem
 }
 

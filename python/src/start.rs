@@ -165,7 +165,7 @@ fn values_of(name: &str, column: &Bound<'_, PyAny>) -> PyResult<Values> {
         refused(format!("{INITIAL}[\"{name}\"]"), found, format!("{allowed}, one a disc"))
     };
     match name {
-        "kind" => {
+        "kind" | "material" => {
             let words: Vec<String> =
                 each_of(column).map_err(|_: PyErr| refuse("a list of words"))?;
             Ok(Values::Words { codes: (0..words.len() as u32).collect(), words })

@@ -18,7 +18,7 @@ TABLES = {
         **dict.fromkeys(["step", "id"], np.int64),
         **dict.fromkeys(["time", "x", "y", "angle", "vx", "vy", "omega", "radius", "mass", "x_unwrapped", "y_unwrapped"], np.float64),
         **dict.fromkeys(["coordination", "pressure", "solid_fraction"], np.float64),
-        "kind": np.str_,
+        **dict.fromkeys(["kind", "material"], np.str_),
     },
     "contacts": {
         **dict.fromkeys(["step", "id_i", "id_j", "age"], np.int64),

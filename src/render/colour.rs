@@ -86,6 +86,17 @@ const VIRIDIS: [Colour; 9] = [
     Colour::hex(0xfde725),
 ];
 
+/// Colours of materials, which colour-blind people can distinguish (Okabe & Ito). The colours of force chains come last.
+pub(super) const MATERIALS: [Colour; 7] = [
+    Colour::hex(0xe69f00),
+    Colour::hex(0x56b4e9),
+    Colour::hex(0x009e73),
+    Colour::hex(0xcc79a7),
+    Colour::hex(0xf0e442),
+    Colour::hex(0x0072b2),
+    Colour::hex(0xd55e00),
+];
+
 /// The colour at `part` of the map. Values outside 0 … 1 have the colour of the nearer end.
 pub(crate) fn map_colour(part: f64) -> Colour {
     // NaN has the colour of 0.

@@ -1,6 +1,6 @@
 //! Colour scales: the quantity of a grain that its colour shows, and its range.
 
-use super::colour::{Colour, map_colour};
+use super::colour::{Colour, MATERIALS, map_colour};
 use super::numbers::{round_above, si_prefix};
 use super::{ColourBy, Style};
 use crate::sim::{GrainView, Snapshot};
@@ -33,6 +33,7 @@ impl ColourScale {
         match self.colour_by {
             ColourBy::PaperGreys => Colour::grey(grain.tone),
             ColourBy::Coordination => contact_colour(grain.coordination),
+            ColourBy::Material => material_colour(grain.material.into()),
             _ => {
                 let span = self.high - self.low;
                 let above = quantity(self.colour_by, grain, mean_diameter) - self.low;
@@ -50,12 +51,18 @@ impl ColourScale {
             ColourBy::Overlap => ("overlap (% of d)".to_owned(), 100.0),
             ColourBy::Force => (format!("force ΣN ({prefix}N)"), 1.0 / factor),
             ColourBy::Coordination => ("contacts".to_owned(), 1.0),
+            ColourBy::Material => ("material".to_owned(), 1.0),
         }
     }
 }
 
 pub(crate) fn contact_colour(contacts: u32) -> Colour {
     map_colour(f64::from(contacts.min(MOST_CONTACTS)) / f64::from(MOST_CONTACTS))
+}
+
+/// The colour of the material with this number. After the last colour the first one follows.
+pub(crate) fn material_colour(number: usize) -> Colour {
+    MATERIALS[number % MATERIALS.len()]
 }
 
 /// A range from zero to a round number that contains every grain of the snapshot. An animation uses the largest range
@@ -80,5 +87,6 @@ fn quantity(colour_by: ColourBy, grain: &GrainView, mean_diameter: f64) -> f64 {
         ColourBy::Overlap => grain.overlap / mean_diameter,
         ColourBy::Force => grain.force,
         ColourBy::Coordination => f64::from(grain.coordination),
+        ColourBy::Material => f64::from(grain.material),
     }
 }

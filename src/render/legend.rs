@@ -5,7 +5,7 @@
 use image::{RgbaImage, imageops};
 
 use super::colour::map_colour;
-use super::colour_scale::{ColourScale, MOST_CONTACTS, contact_colour};
+use super::colour_scale::{ColourScale, MOST_CONTACTS, contact_colour, material_colour};
 use super::numbers::{decimal, length, round_below, si_prefix, ticks};
 use super::overlays::{force_reference, full_half_width_px, full_length, speed_reference};
 use super::text::{Align, TextBlock, TextStyle};
@@ -66,9 +66,11 @@ impl ScaleBar {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Legend {
     pub scale: ColourScale,
+    /// Names of the materials.
+    pub materials: Vec<String>,
     /// How much the grains have faded towards the ground, 0 … 1.
     pub fading: f32,
     /// The |N| (N) at full width, and half that width (px), if forces are drawn.
@@ -88,6 +90,7 @@ impl Legend {
         let arrow = || (speed_reference(style, snapshot), camera.pixels(full_length(snapshot)));
         Self {
             scale: ColourScale::new(style, snapshot),
+            materials: snapshot.surroundings.materials.iter().map(|it| it.name.clone()).collect(),
             fading: style.fading(),
             forces: style.show_forces.then(forces),
             velocities: style.show_velocities.then(arrow),
@@ -108,7 +111,19 @@ impl Legend {
         let top = self.em(1.0);
         match self.scale.colour_by {
             ColourBy::PaperGreys => {}
-            ColourBy::Coordination => self.draw_swatches(&mut strip, top, bottom),
+            ColourBy::Coordination => {
+                let swatch = |contacts: u32| {
+                    let least = if contacts == MOST_CONTACTS { "≥ " } else { "" };
+                    (contact_colour(contacts), format!("{least}{contacts}"))
+                };
+                let numbers = (0..MOST_CONTACTS + 1).rev();
+                self.draw_swatches(&mut strip, top, bottom, numbers.map(swatch));
+            }
+            ColourBy::Material => {
+                let names = self.materials.iter().cloned().enumerate();
+                let swatches = names.map(|(number, name)| (material_colour(number), name));
+                self.draw_swatches(&mut strip, top, bottom, swatches);
+            }
             _ => self.draw_bar(&mut strip, top, bottom),
         }
         strip
@@ -156,9 +171,15 @@ impl Legend {
         self.draw_title(strip, &title, rows, right + self.em(0.5) + widest, (top + bottom) / 2);
     }
 
-    /// Draws one square for each number of contacts, the largest on top.
-    fn draw_swatches(&self, strip: &mut RgbaImage, top: i64, bottom: i64) {
-        let count = i64::from(MOST_CONTACTS) + 1;
+    /// Draws squares of these colours with their labels, from the top, and the turned title beyond them.
+    fn draw_swatches(
+        &self,
+        strip: &mut RgbaImage,
+        top: i64,
+        bottom: i64,
+        swatches: impl ExactSizeIterator<Item = (Colour, String)>,
+    ) {
+        let count = (swatches.len() as i64).max(1);
         let pitch = self.em(1.8).min((bottom - top) / count);
         if pitch < 3 {
             return;
@@ -166,11 +187,10 @@ impl Legend {
         let (left, right) = (self.em(0.4), self.em(1.5));
         let start = (top + bottom - count * pitch) / 2;
         let mut widest = 0;
-        for contacts in 0..=MOST_CONTACTS {
-            let y = start + i64::from(MOST_CONTACTS - contacts) * pitch;
-            fill(strip, left, right, y, y + pitch, self.faded(contact_colour(contacts)));
-            let least = if contacts == MOST_CONTACTS { "≥ " } else { "" };
-            let label = TextBlock::new(&format!("{least}{contacts}"), &self.text());
+        for (place, (colour, label)) in (0..).zip(swatches) {
+            let y = start + place * pitch;
+            fill(strip, left, right, y, y + pitch, self.faded(colour));
+            let label = TextBlock::new(&label, &self.text());
             widest = widest.max(i64::from(label.width()));
             label.draw(strip, right + self.em(0.4), y + pitch / 2, Align::Start, Align::Centre);
         }

@@ -344,6 +344,7 @@ mod tests {
             boundaries,
             centre_of_attraction: None,
             periodic: None,
+            materials: Vec::new(),
             mean_diameter: 0.1,
             gravity_magnitude: 9.8,
             moving: vec![moving],

@@ -30,12 +30,14 @@ pub enum ColourBy {
     Force,
     /// Number of the grain's contacts.
     Coordination,
+    /// Material of the grain.
+    Material,
 }
 
 impl ColourBy {
     /// True if the colours stand for numbers, which need a scale.
     pub(crate) fn has_scale(self) -> bool {
-        !matches!(self, Self::PaperGreys | Self::Coordination)
+        !matches!(self, Self::PaperGreys | Self::Coordination | Self::Material)
     }
 }
 
@@ -192,6 +194,7 @@ mod tests {
             (ColourBy::Overlap, "overlap"),
             (ColourBy::Force, "force"),
             (ColourBy::Coordination, "coordination"),
+            (ColourBy::Material, "material"),
         ] {
             assert_eq!(ColourBy::from_str(name, false), Ok(value));
             assert_eq!(serde_json::to_value(value).unwrap(), name);

@@ -103,6 +103,8 @@ pub fn scene(
         view: None,
         source: None,
         data: None,
+        materials: Vec::new(),
+        pairs: Vec::new(),
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,

@@ -100,7 +100,11 @@ fn a_problem_whose_matrix_would_not_fit_is_refused_with_the_disc_that_all_others
 fn a_tolerance_in_which_small_discs_lose_themselves_is_refused() {
     let mut grains = collision().grains;
     let least = 1e-4 * grains[0].radius;
-    grains.push(Grain { position: grains[0].position + DVec2::X, radius: least, ..grains[0] });
+    grains.push(Grain {
+        position: grains[0].position + DVec2::X,
+        radius: least,
+        ..grains[0].clone()
+    });
     let spoilt = Scene { grains, gap_tolerance: least, ..collision() };
     let said = refused(&spoilt);
     assert!(said.starts_with("gap_tolerance is ") && said.contains(" below "), "{said}");

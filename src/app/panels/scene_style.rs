@@ -2,14 +2,14 @@
 
 use crate::app::preferences::Preferences;
 use crate::app::watched_run::WatchedRun;
-use crate::render::{ColourBy, Style, Theme, automatic_range, force_reference, speed_reference};
+use crate::render::{Style, Theme, automatic_range, force_reference, speed_reference};
 
 /// The style of the preferences in the window's theme, with one range for all worlds.
 pub(super) fn shared_style(run: &WatchedRun, preferences: &Preferences, dark: bool) -> Style {
     let mut style = own_style(preferences, dark);
     if run.compares() {
         let worlds = || run.frame.worlds.iter().map(|world| &world.snapshot);
-        if !matches!(style.colour_by, ColourBy::PaperGreys | ColourBy::Coordination) {
+        if style.colour_by.has_scale() {
             let ends = worlds().map(|snapshot| automatic_range(style.colour_by, snapshot).1);
             style.range = Some((0.0, ends.fold(0.0, f64::max)));
         }

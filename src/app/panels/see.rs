@@ -18,12 +18,13 @@ use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
 
 /// Choices of the colours of grains, with their names.
-const COLOURS: [(ColourBy, &str); 5] = [
+const COLOURS: [(ColourBy, &str); 6] = [
     (ColourBy::PaperGreys, "paper greys"),
     (ColourBy::Speed, "speed"),
     (ColourBy::Overlap, "overlap"),
     (ColourBy::Force, "force Σ|N|"),
     (ColourBy::Coordination, "contacts"),
+    (ColourBy::Material, "material"),
 ];
 
 pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {

@@ -17,6 +17,7 @@ pub fn disc(position: DVec2, radius: f64) -> GrainState {
         mass: std::f64::consts::PI * radius * radius,
         feels_gravity: true,
         tone: 0,
+        material: 0,
         lost: false,
     }
 }
@@ -34,6 +35,7 @@ pub fn discs(grains: Vec<GrainState>) -> Moment {
             boundaries: Vec::new(),
             centre_of_attraction: None,
             periodic: None,
+            materials: Vec::new(),
             mean_diameter,
             gravity_magnitude: 9.8,
             moving: Vec::new(),

@@ -6,6 +6,7 @@ mod cradle;
 mod floors;
 mod impacts;
 mod lost_grains;
+mod materials;
 mod moments;
 mod pyramid;
 mod slopes;

@@ -74,6 +74,8 @@ fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
         motions: Vec::new(),
         gravity_turn: None,
         periodic: None,
+        materials: Vec::new(),
+        pairs: Vec::new(),
         boundaries: vec![Boundary::HalfSpace {
             point: origin + DVec2::new(0.5, 0.0),
             normal: DVec2::new(2.0, 0.1),

@@ -151,8 +151,8 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         };
         let rebound = |approach: Approach| parameters.restitution * approach.velocity;
         let settings = SolverSettings { tolerance: 1e-6, max_sweeps: 50, ..scene.solver };
-        full.prepare(world, contacts, numbers, &settings, rebound, None);
-        lean.prepare(world, contacts, numbers, &settings, rebound, None);
+        full.prepare(world, contacts, numbers, &settings, rebound, None, None);
+        lean.prepare(world, contacts, numbers, &settings, rebound, None, None);
         solve(&mut full, &mut Memory::default(), &settings);
         solve(&mut lean, &mut Memory::default(), &settings);
         for (a, b) in full.bodies.now.iter().zip(&lean.bodies.now) {

@@ -25,6 +25,7 @@ fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
         force: 0.0,
         coordination: 0,
         tone,
+        material: 0,
     }
 }
 
@@ -60,6 +61,7 @@ pub fn pile() -> Snapshot {
             boundaries: vec![wall],
             centre_of_attraction: None,
             periodic: None,
+            materials: Vec::new(),
             mean_diameter: D,
             gravity_magnitude: 9.8,
             moving: Vec::new(),
@@ -132,6 +134,7 @@ pub fn cradle() -> Snapshot {
             ],
             centre_of_attraction: Some(DVec2::ZERO),
             periodic: None,
+            materials: Vec::new(),
             mean_diameter: 2.0 * radius,
             gravity_magnitude: 2.0,
             moving: Vec::new(),

@@ -287,3 +287,28 @@ fn pictures_come_at_the_steps_that_they_would_have_come_at() {
     let read = read_back(&bytes_of(&scene, &simulation)).simulation;
     assert_eq!(read.step_at(0.0225), simulation.step_at(0.0225));
 }
+
+#[test]
+fn materials_and_masses_go_on_and_a_new_start_has_them() {
+    let mut scene = pressed_pile(30, 0.3, 5, parameters(20.0, 1e-3, 0.3, 0.5));
+    scene.grains.iter_mut().step_by(3).for_each(|grain| grain.material = Some("other".into()));
+    scene.grains[1].mass = Some(1e-3);
+    let named = |name: &str| Material { name: name.into(), ..Material::default() };
+    let other = Material { areal_density: Some(4.0), fixed_discs: vec![0, 1], ..named("other") };
+    scene.materials = vec![named("one"), other];
+    scene.pairs = vec![MaterialPair {
+        between: ["one", "other"].map(str::to_owned),
+        friction: Some(0.1),
+        cohesion_force: Some(1e-3),
+        ..MaterialPair::default()
+    }];
+    let mut simulation = start(&scene);
+    simulation.take_steps(10).expect("finite states");
+    goes_on(&scene, &simulation, 10, "materials");
+    let anew = read_back(&bytes_of(&scene, &simulation)).as_start();
+    let is_given = |grain: &Grain| grain.mass.is_some();
+    assert_eq!(anew.grains.iter().position(is_given), Some(1));
+    assert_eq!(anew.grains.iter().filter(|grain| is_given(grain)).count(), 1);
+    let [now, begin] = [&simulation, &start(&anew)].map(|run| run.world().grains.clone());
+    assert_eq!((now.masses, now.materials), (begin.masses, begin.materials));
+}

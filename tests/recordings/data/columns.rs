@@ -214,6 +214,7 @@ fn grain_cells(moment: &Moment, id: usize, grain: &GrainState) -> Row {
         ("kind", word(if grain.lost { "lost" } else { "grain" })),
         ("x_unwrapped", grain.unwrapped.x.into()),
         ("y_unwrapped", grain.unwrapped.y.into()),
+        ("material", word("")),
     ]
 }
 

@@ -153,49 +153,68 @@ fn text_that_is_no_state_is_told_of_by_line() {
     check("step,x,y,radius\n", "holds no disc, but must hold at least one");
 }
 
-/// A mass that differs from the scene's would silently change the physics.
 #[test]
-fn masses_that_the_scene_does_not_have_are_refused_in_every_format() {
+fn masses_densities_and_materials_of_a_file_are_used_in_every_format() {
     let folder = folder();
     let [path, columns] = ["discs.csv", "discs.parquet"].map(|name| folder.path().join(name));
     let check = |path: &Path, place: &str, expected: &str| {
         let said = refusal(&["--initial", text(path), "--data", "no"]);
-        let expected = format!("{}: {place}{expected}", path.display());
-        assert!(said.starts_with(&expected) && said.contains("areal_density"), "{said}");
+        assert_eq!(said, format!("{}: {place}{expected}", path.display()));
     };
-    write(&path, "x,y,radius,mass\n0,0.0075,0.0025,1e-5\n0,0.0125,0.0025,1e-2\n");
-    let another = "mass is 0.01 kg, but must be left out or 1.000000e-5, as the first grain has";
-    check(&path, "line 3: ", another);
-    write_columns(&columns, &[XS, YS, RADII, Column::Numbers("mass", &[1e-5, 1e-2, 1e-2])]);
-    check(&columns, "row 2: ", another);
-    // All discs have the same density, but not the scene's.
-    write(&path, "x,y,radius,mass\n0,0.0075,0.0025,4.908738521e-2\n");
-    check(&path, "", "mass is 2.500000e3 kg per m² of a disc, but must be left out or that of");
     for mass in ["0", "-1", "inf"] {
         write(&path, format!("x,y,radius,mass\n0,0.0075,0.0025,{mass}\n"));
-        check(
-            &path,
-            "line 2: ",
-            &format!("mass is {mass} kg, but must be left out or finite and > 0"),
-        );
+        let expected = format!("mass is {mass} kg, but must be left out or finite and > 0");
+        check(&path, "line 2: ", &expected);
+        write(&path, format!("x,y,radius,density\n0,0.0075,0.0025,{mass}\n"));
+        let expected = format!("density is {mass} kg/m², but must be left out or finite and > 0");
+        check(&path, "line 2: ", &expected);
     }
-    // The scene's own masses are accepted; fixed discs have none.
-    let mass = std::f64::consts::PI * 0.0025f64.powi(2);
-    let table = format!("x,y,radius,kind,mass\n0,0.0075,0.0025,grain,{mass}\n0,0,0.0025,fixed,\n");
-    write(&path, &table);
-    assert_eq!(read_grains(&path, None).expect("discs").fixed_discs.len(), 1);
-    succeed(slump("scene --initial").arg(&path).stdout(Stdio::null()));
-    // A scene file is accepted only with the density of the file's discs.
+    write(&path, "x,y,radius,mass,density\n0,0.0075,0.0025,1e-5,1\n");
+    check(&path, "line 2: ", "density is 1 kg/m², but must be left out where a mass is given");
+    let said = |table: &str| {
+        write(&path, table);
+        refusal(&["--initial", text(&path), "--data", "no"])
+    };
+    let unknown = said("x,y,radius,material\n0,0.0075,0.0025,ice\n");
+    assert!(unknown.starts_with("grains[0].material is ice, but must be left out"), "{unknown}");
+    let unknown = said("x,y,radius,kind,material\n0,0.1,0.0025,grain,\n0,0,0.0025,fixed,ice\n");
+    assert!(
+        unknown.contains("the material of a fixed disc is ice, but must be one of"),
+        "{unknown}"
+    );
+
     let mut scene = scene("pile");
     scene.grains.clear();
-    scene.source = Some(slump::scene::GrainSource::Csv { path: "discs.csv".into() });
-    let file = folder.path().join("scene.toml");
-    write(&path, "x,y,radius,mass\n0,0.0075,0.0025,4.908738521e-2\n");
-    for (areal_density, is_read) in [(2500.0, true), (1.0, false)] {
-        scene.areal_density = areal_density;
+    scene.fixed_discs.clear();
+    let names = ["one", "other"].map(str::to_owned);
+    scene.materials =
+        names.map(|name| slump::world::Material { name, ..Default::default() }).to_vec();
+    let mut masses_in = |source: &Path| {
+        scene.source = Some(slump::scene::GrainSource::Csv { path: source.into() });
+        let file = folder.path().join("scene.toml");
         write(&file, slump::config::scene_to_toml(&scene).expect("TOML"));
-        assert_eq!(slump::config::read_scene(&file).is_ok(), is_read, "{areal_density}");
-    }
+        let read = slump::config::read_scene(&file).expect("a scene");
+        let run = read.simulation().expect("a proper scene");
+        let grains = run.world().grains.clone();
+        let is_given = read.grains.iter().map(|grain| grain.mass.is_some()).collect::<Vec<_>>();
+        assert_eq!(read.materials[1].fixed_discs, if source == path { vec![1] } else { vec![] });
+        (grains.masses, grains.materials, is_given)
+    };
+    let implied = std::f64::consts::PI * 0.0025 * 0.0025;
+    write(
+        &path,
+        format!(
+            "x,y,radius,kind,mass,density,material\n0,0.0075,0.0025,grain,1e-2,,other\n\
+             0,0,0.0025,fixed,,,\n0.1,0,0.0025,fixed,,,other\n0,0.0125,0.0025,grain,,3,one\n\
+             0,0.0225,0.0025,grain,{implied},,\n"
+        ),
+    );
+    let expected = (vec![1e-2, 3.0 * implied, implied], vec![1, 0, 0], vec![true, true, false]);
+    assert_eq!(masses_in(&path), expected);
+    let materials = Column::Words("material", &["other", "", "one"]);
+    let masses = Column::Numbers("mass", &[1e-5, 1e-2, 1e-2]);
+    write_columns(&columns, &[XS, YS, RADII, masses, materials]);
+    assert_eq!(masses_in(&columns), (vec![1e-5, 1e-2, 1e-2], vec![1, 0, 0], vec![true; 3]));
 }
 
 /// Tables as pandas, numpy and spreadsheets write them by default.

@@ -36,6 +36,7 @@ fn moment(step: u64) -> Moment {
         mass: 0.125,
         feels_gravity: true,
         tone: 0,
+        material: 0,
         lost: false,
     };
     let lost = GrainState { lost: true, ..grain(2, -1e6, 0.0, 0.5) };
@@ -61,6 +62,7 @@ fn moment(step: u64) -> Moment {
         boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
         centre_of_attraction: None,
         periodic: None,
+        materials: Vec::new(),
         mean_diameter: 1.0,
         gravity_magnitude: 9.8,
         moving: Vec::new(),

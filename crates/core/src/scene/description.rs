@@ -13,8 +13,8 @@ use crate::setting::words;
 use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{
-    Boundary, Disc, Grain, Grains, Gravity, GravityTurn, Motion, Parameters, Periodic, Physics,
-    TurningGravity, World,
+    Boundary, Disc, Grain, Grains, Gravity, GravityTurn, Material, MaterialPair, Motion,
+    Parameters, Periodic, Physics, TurningGravity, World, check_name,
 };
 
 /// A scene, built-in or from a TOML file with the same field names. Plain data, checked when a simulation is made
@@ -64,6 +64,12 @@ pub struct Scene {
     /// Settings for recordings of its runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub data: Option<DataSettings>,
+    /// Materials of grains, fixed discs and boundaries.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<Material>,
+    /// Contact laws of pairs of materials that differ from the parameters.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pairs: Vec<MaterialPair>,
     /// Fixed shapes.
     #[serde(default)]
     pub boundaries: Vec<Boundary>,
@@ -167,6 +173,8 @@ impl Scene {
             view: None,
             source: None,
             data: None,
+            materials: Vec::new(),
+            pairs: Vec::new(),
             boundaries: Vec::new(),
             fixed_discs: Vec::new(),
             motions: Vec::new(),
@@ -210,6 +218,12 @@ impl Scene {
         error::check(!self.grains.is_empty(), "grains", 0, "at least one disc")?;
         for (index, grain) in self.grains.iter().enumerate() {
             positive(format_args!("grains[{index}].radius"), grain.radius, " m")?;
+            if let Some(mass) = grain.mass {
+                positive(format_args!("grains[{index}].mass"), mass, " kg")?;
+            }
+            if let Some(name) = &grain.material {
+                check_name(|| format!("grains[{index}].material"), name, &self.materials)?;
+            }
             let finite = grain.position.is_finite()
                 && grain.velocity.is_finite()
                 && grain.angular_velocity.is_finite();
@@ -277,8 +291,10 @@ impl Scene {
             motions: self.motions.clone(),
             gravity_turn: TurningGravity::of(self.gravity, self.gravity_turn.as_ref()),
             periodic: self.periodic,
+            materials: self.materials.clone(),
+            pairs: self.pairs.clone(),
             ..World::of(
-                Grains::new(&self.grains, self.areal_density),
+                Grains::of_materials(&self.grains, self.areal_density, &self.materials),
                 self.gravity,
                 self.mean_diameter,
             )
@@ -333,6 +349,16 @@ impl Scene {
             }
         }
         View { min, max }
+    }
+
+    /// Leaves out masses of grains that equal those of their materials bit by bit.
+    pub fn without_implied_masses(mut self) -> Self {
+        for grain in &mut self.grains {
+            let given = grain.mass.take();
+            let (_, implied) = grain.material_and_mass(self.areal_density, &self.materials);
+            grain.mass = given.filter(|&mass| mass != implied);
+        }
+        self
     }
 
     /// The same scene with these grains, in greys by layer.

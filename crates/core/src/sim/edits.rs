@@ -167,7 +167,8 @@ impl Simulation {
         let density = grown.grains.masses[0] / grown.grains.radii[0].powi(2) / std::f64::consts::PI;
         let others = grown.fixed_discs.len() + grown.boundaries.len();
         let id = grown.grains.count_at_start + others as u32 + grown.grains.added;
-        grown.grains.push(&Grain { velocity, ..Grain::at_rest(position, radius) }, density, id);
+        let grain = Grain { velocity, ..Grain::at_rest(position, radius) };
+        grown.grains.push(&grain, density, &grown.materials, id);
         grown.grains.added += 1;
         grown.validate(self.state.physics)?;
         self.settings.check_in(&grown, self.state.physics)?;

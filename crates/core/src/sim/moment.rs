@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{Bond, TOUCH_IN_DIAMETERS};
-use crate::contact::{Candidates, Contact, Impulse, Numbering, Other, Transmitted};
+use crate::contact::{Candidates, Contact, Impulse, Numbering, Other, PairLaws, Transmitted};
 use crate::number::Parts;
 use crate::setting::words;
 use crate::sim::observables::Observables;
@@ -15,7 +15,7 @@ use crate::sim::settings::{Settings, Stepper};
 use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
-use crate::world::{FrictionCone, Parameters, World};
+use crate::world::{FrictionCone, PairNumbers, Parameters, World};
 
 /// Largest relative distance of a friction force from its bound that counts as slip. If smaller, slipping contacts of
 /// solvers that end near the bound count as sticking; if larger, sticking contacts near the bound count as slipping.
@@ -71,6 +71,8 @@ pub struct GrainState {
     pub feels_gravity: bool,
     /// Grey from the scene: 0 is black, 255 white.
     pub tone: u8,
+    /// Number of its material in the list of the surroundings.
+    pub material: u8,
     /// True if the grain went through a wall or left the world.
     pub lost: bool,
 }
@@ -199,6 +201,7 @@ impl Simulation {
             mass: grains.masses[index],
             feels_gravity: grains.feels_gravity[index],
             tone: grains.tones[index],
+            material: grains.material(index),
             lost: self.is_lost(index),
         };
         Moment {
@@ -215,7 +218,10 @@ impl Simulation {
 /// Inputs for a contact's status.
 struct Laws<'a> {
     world: &'a World,
+    candidates: &'a Candidates,
     parameters: &'a Parameters,
+    /// The laws of pairs of materials, if they have their own numbers.
+    pairs: Option<PairLaws>,
     has_cohesion: bool,
     has_bonds: bool,
     friction: f64,
@@ -223,12 +229,14 @@ struct Laws<'a> {
 
 impl<'a> Laws<'a> {
     fn of(simulation: &'a Simulation) -> Self {
-        let State { world, physics, .. } = &simulation.state;
+        let State { world, candidates, physics, .. } = &simulation.state;
         let settings = simulation.settings();
         let parameters = &settings.parameters;
         Self {
             world,
+            candidates,
             parameters,
+            pairs: simulation.state.pair_laws(parameters),
             has_cohesion: physics.cohesion,
             has_bonds: settings.stepper == Stepper::Range,
             friction: if physics.friction { parameters.friction } else { 0.0 },
@@ -257,11 +265,18 @@ impl<'a> Laws<'a> {
             FrictionCone::Shifted => pushed_together,
             FrictionCone::Compressive => normal.positive_part(),
         };
-        if tangential.abs() >= (1.0 - SLIPS_WITHIN) * self.friction * rubbing {
+        let friction = self.numbers(contact).map_or(self.friction, |numbers| numbers.friction);
+        if tangential.abs() >= (1.0 - SLIPS_WITHIN) * friction * rubbing {
             ContactStatus::Slip
         } else {
             ContactStatus::Stick
         }
+    }
+
+    /// The numbers of a contact's pair of materials, if pairs have their own.
+    fn numbers(&self, contact: &Contact) -> Option<PairNumbers> {
+        let pairs = self.pairs.as_ref()?;
+        Some(pairs.numbers(self.world, self.candidates, contact))
     }
 
     /// C₀, newton; 0 for a pair without a bond under a law that requires one.
@@ -272,6 +287,9 @@ impl<'a> Laws<'a> {
         let masses = &self.world.grains.masses;
         let mass = masses[contact.grain as usize];
         let per_mass = 1.0 / mass + other.grain().map_or(0.0, |index| 1.0 / masses[index]);
+        if let (Some(pairs), Some(numbers)) = (&self.pairs, self.numbers(contact)) {
+            return pairs.cohesion_per_mass(numbers, 1.0 / per_mass) / per_mass;
+        }
         let g = self.world.gravity.magnitude();
         let acceleration = self.parameters.cohesion_acceleration(g);
         cohesion_force(self.parameters.bond, 1.0 / per_mass, acceleration)

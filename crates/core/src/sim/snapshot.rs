@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Numbering, Other};
-use crate::number::Parts;
+use crate::number::{Parts, is_zero};
 use crate::sim::observables::Observables;
 use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
@@ -68,6 +68,9 @@ pub struct GrainView {
     pub coordination: u32,
     /// Grey from the scene: 0 is black, 255 white.
     pub tone: u8,
+    /// Number of its material in the list of the surroundings.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub material: u8,
 }
 
 /// One contact at one moment.
@@ -105,6 +108,7 @@ impl Simulation {
                 force: 0.0,
                 coordination: 0,
                 tone: grains.tones[index],
+                material: grains.material(index),
             })
             .collect();
         let per_time_step = 1.0 / self.state.time_step_of_impulses_secs;

@@ -4,7 +4,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Candidates, ContactList, LookAhead, Reach, check_distances};
+use crate::contact::{Candidates, ContactList, LookAhead, PairLaws, Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::sim::pull::{Pull, Push};
 use crate::sim::settings::Settings;
@@ -44,7 +44,18 @@ pub(crate) struct State {
 impl State {
     /// The smallest model that computes all physics of the state.
     pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
-        ModelParts::leanest(self.physics, self.world.periodic, parameters)
+        ModelParts::leanest(self.physics, self.world.periodic, self.largest_friction(parameters))
+    }
+
+    /// The contact laws by pairs of materials; `None` if all contacts have the numbers of the parameters.
+    pub(crate) fn pair_laws(&self, parameters: &Parameters) -> Option<PairLaws> {
+        PairLaws::of(&self.world, parameters, self.physics)
+    }
+
+    /// The largest μ of any contact.
+    pub(crate) fn largest_friction(&self, parameters: &Parameters) -> f64 {
+        let laws = self.pair_laws(parameters);
+        laws.map_or(parameters.friction, |laws| laws.largest(&self.world.grains)[0])
     }
 
     /// The number of substeps that the stepper takes per step.

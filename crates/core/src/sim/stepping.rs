@@ -4,10 +4,10 @@ use crate::contact::{ContactList, InTouch, LookAhead};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
-    Approach, BodySystem, Measures, Memory, Model, MovingSurfaces, ProblemNumbers, Slot,
-    SolveReport, StepProblem, cone_of, measure, solve,
+    Approach, BodySystem, Measures, Memory, Model, MovingSurfaces, NumbersOfContact,
+    ProblemNumbers, RowNumbers, Slot, SolveReport, StepProblem, cone_of, measure, solve,
 };
-use crate::world::World;
+use crate::world::{FrictionCone, World};
 
 /// Result of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -129,8 +129,10 @@ impl<'a, M: Model> Stage<'a, M> {
         let in_touch = InTouch::Within(range);
         let ahead = LookAhead { time_step_secs, distance: range, reach: range, in_touch };
         self.prepare_ahead(settings, |_| Some(ahead), rebound);
-        // Each contact has the capture speed of the law.
-        self.problem.rows.captures.clear();
+        if self.problem.rows.frictions.is_empty() {
+            // Each contact has the capture speed of the law.
+            self.problem.rows.captures.clear();
+        }
     }
 
     /// Like [`prepare`](Self::prepare), with the contacts that may form within the step, as determined by
@@ -148,24 +150,42 @@ impl<'a, M: Model> Stage<'a, M> {
         let ahead = look_ahead(state);
         state.detect::<M>(ahead);
         let pushes = state.pushes(M::AXES, time_step_secs);
-        let State { world, physics, contacts, walls, .. } = &mut **state;
-        let capture_speed = if physics.cohesion {
-            parameters.capture_speed(world.gravity.magnitude())
-        } else {
-            0.0
+        let laws = state.pair_laws(parameters);
+        let State { world, physics, contacts, candidates, walls, .. } = &mut **state;
+        let largest = laws.as_ref().map(|laws| laws.largest(&world.grains));
+        let capture_speed = match largest {
+            Some([_, cohesion_per_mass]) => cohesion_per_mass * time_step_secs,
+            None if physics.cohesion => parameters.capture_speed(world.gravity.magnitude()),
+            None => 0.0,
         };
         let numbers = ProblemNumbers {
             time_step_secs,
-            friction: parameters.friction,
+            friction: largest.map_or(parameters.friction, |[friction, _]| friction),
             capture_speed,
-            cone: cone_of(*physics, parameters),
+            cone: match largest {
+                Some(_) if capture_speed > 0.0 => parameters.cone,
+                Some(_) => FrictionCone::Shifted,
+                None => cone_of(*physics, parameters),
+            },
         };
+        let numbers_of = laws.map(|laws| {
+            let (world, candidates) = (&*world, &*candidates);
+            move |contact: &_, effective_mass: f64| {
+                let numbers = laws.numbers(world, candidates, contact);
+                RowNumbers {
+                    friction: numbers.friction,
+                    restitution: numbers.restitution,
+                    capture_speed: laws.cohesion_per_mass(numbers, effective_mass) * time_step_secs,
+                }
+            }
+        });
+        let numbers_of = numbers_of.as_ref().map(|of| of as NumbersOfContact<'_>);
         let surface_of = |contact: &_| walls.surface(world, contact);
         let surfaces = walls.any_move().then(|| MovingSurfaces {
             driven: walls.driven(world, time_step_secs).collect(),
             of: &surface_of,
         });
-        problem.prepare(world, contacts, numbers, &settings.solver, rebound, surfaces);
+        problem.prepare(world, contacts, numbers, &settings.solver, rebound, surfaces, numbers_of);
         for push in pushes {
             push.apply::<M>(&mut problem.bodies.free);
             push.apply::<M>(&mut problem.bodies.now);

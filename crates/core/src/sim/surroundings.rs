@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::world::{Boundary, Disc, Gravity, Periodic, World};
+use crate::world::{Boundary, Disc, Gravity, Material, Periodic, World};
 
 /// The part of a picture that grains do not change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +22,9 @@ pub struct Surroundings {
     pub mean_diameter: f64,
     /// The scene's g, m/s².
     pub gravity_magnitude: f64,
+    /// The scene's materials.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<Material>,
     /// Motions of some of these bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<MotionView>,
@@ -97,6 +100,7 @@ impl Surroundings {
                 Gravity::Uniform { .. } => None,
             },
             periodic: world.periodic,
+            materials: world.materials.clone(),
             mean_diameter: world.mean_diameter,
             gravity_magnitude: world.gravity.magnitude(),
             moving: MotionView::all(world, time_step_secs),

@@ -55,6 +55,8 @@ pub struct MethodInfo {
     pub takes_drives: bool,
     /// True if it supports periodic borders that shear, whose images of grains slide.
     pub takes_shear: bool,
+    /// True if it supports pairs of materials with their own contact laws.
+    pub takes_pairs: bool,
 }
 
 /// The order in which a method visits the contacts.
@@ -83,7 +85,7 @@ const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 /// Laws satisfied at a fixed point of the iteration that recomputes the friction bound from its own impulses.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
-/// A method that supports shear, but neither models of friction nor driven walls.
+/// A method that supports shear and pairs of materials, but neither models of friction nor driven walls.
 const fn known(
     method: Method,
     order: MethodOrder,
@@ -100,6 +102,7 @@ const fn known(
         takes_models: false,
         takes_drives: false,
         takes_shear: true,
+        takes_pairs: true,
     }
 }
 
@@ -119,6 +122,7 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
         },
         MethodInfo {
             takes_shear: false,
+            takes_pairs: false,
             ..known(
                 Method::NsgsParallel,
                 Always(Ordering::Coloured),

@@ -20,16 +20,12 @@ pub struct ModelParts {
 
 impl ModelParts {
     /// The leanest model that computes everything the scene has (`physics`) and the parameters switch on: without
-    /// friction if μ = 0. It gives the same impulses as a fuller model.
-    pub(crate) fn leanest(
-        physics: Physics,
-        periodic: Option<Periodic>,
-        parameters: &Parameters,
-    ) -> Self {
+    /// friction if the largest μ, `friction`, is 0. It gives the same impulses as a fuller model.
+    pub(crate) fn leanest(physics: Physics, periodic: Option<Periodic>, friction: f64) -> Self {
         Self {
             axes: physics.axes,
             sheared: periodic.is_some_and(Periodic::is_sheared),
-            friction: physics.friction && parameters.friction > 0.0,
+            friction: physics.friction && friction > 0.0,
             rotation: physics.rotation,
         }
     }

@@ -3,6 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::materials::{Material, number_of};
 use crate::error::{self, Error, Result};
 
 /// One disc of a scene. Plain data, checked with the scene.
@@ -25,6 +26,12 @@ pub struct Grain {
     /// Grey of the disc in pictures in the style of the paper: 0 is black, 255 white.
     #[serde(default = "light_grey")]
     pub tone: u8,
+    /// Name of its material. Default: the first material of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
+    /// Mass, kg. Default: areal density × πr².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass: Option<f64>,
 }
 
 fn yes() -> bool {
@@ -48,7 +55,24 @@ impl Grain {
             angular_velocity: 0.0,
             feels_gravity: true,
             tone: Self::DEFAULT_TONE,
+            material: None,
+            mass: None,
         }
+    }
+
+    /// The number of its material, and its mass, kg: its own, or πr² times the areal density (kg/m²) of its material
+    /// or of the scene.
+    pub(crate) fn material_and_mass(
+        &self,
+        areal_density: f64,
+        materials: &[Material],
+    ) -> (usize, f64) {
+        let number = self.material.as_ref().and_then(|name| number_of(materials, name));
+        let number = number.unwrap_or(0);
+        let density = materials.get(number).and_then(|material| material.areal_density);
+        let implied =
+            density.unwrap_or(areal_density) * std::f64::consts::PI * self.radius * self.radius;
+        (number, self.mass.unwrap_or(implied))
     }
 }
 
@@ -72,12 +96,15 @@ pub struct Grains {
     pub angular_velocities: Vec<f64>,
     /// Radii, m.
     pub radii: Vec<f64>,
-    /// Masses, kg: areal density × πr².
+    /// Masses, kg: areal density × πr², unless the scene gives them.
     pub masses: Vec<f64>,
     /// True if gravity acts on the disc.
     pub feels_gravity: Vec<bool>,
     /// Greys for pictures in the style of the paper.
     pub tones: Vec<u8>,
+    /// The number of each disc's material; empty in a world without materials.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<u8>,
     /// Displacement that periodic borders have subtracted from each centre since the start, m. Added to the centre,
     /// it gives the unwrapped position.
     pub brought_back: Vec<DVec2>,
@@ -93,21 +120,41 @@ pub struct Grains {
 impl Grains {
     /// Builds the lists from `grains`. `areal_density` in kg/m².
     pub fn new(grains: &[Grain], areal_density: f64) -> Self {
+        Self::of_materials(grains, areal_density, &[])
+    }
+
+    /// Builds the lists from `grains` of these materials. `areal_density` in kg/m², for materials without their own.
+    pub(crate) fn of_materials(
+        grains: &[Grain],
+        areal_density: f64,
+        materials: &[Material],
+    ) -> Self {
         let mut lists = Self::default();
-        grains.iter().zip(0..).for_each(|(grain, id)| lists.push(grain, areal_density, id));
+        let ids = grains.iter().zip(0..);
+        ids.for_each(|(grain, id)| lists.push(grain, areal_density, materials, id));
         lists.count_at_start = lists.len() as u32;
         lists
     }
 
-    /// Appends a grain with number `id`. `areal_density` in kg/m².
-    pub(crate) fn push(&mut self, grain: &Grain, areal_density: f64, id: u32) {
+    /// Appends a grain of one of `materials` with number `id`. `areal_density` in kg/m².
+    pub(crate) fn push(
+        &mut self,
+        grain: &Grain,
+        areal_density: f64,
+        materials: &[Material],
+        id: u32,
+    ) {
+        let (material, mass) = grain.material_and_mass(areal_density, materials);
+        if !materials.is_empty() {
+            self.materials.push(material as u8);
+        }
         self.ids.push(id);
         self.positions.push(grain.position);
         self.velocities.push(grain.velocity);
         self.angles.push(0.0);
         self.angular_velocities.push(grain.angular_velocity);
         self.radii.push(grain.radius);
-        self.masses.push(areal_density * std::f64::consts::PI * grain.radius * grain.radius);
+        self.masses.push(mass);
         self.feels_gravity.push(grain.feels_gravity);
         self.tones.push(grain.tone);
         self.brought_back.push(DVec2::ZERO);
@@ -126,6 +173,7 @@ impl Grains {
             ("tones", self.tones.len()),
             ("brought_back", self.brought_back.len()),
             ("ids", self.ids.len()),
+            ("materials", if self.materials.is_empty() { count } else { self.materials.len() }),
         ];
         match lengths.into_iter().find(|&(_, length)| length != count) {
             None => Ok(()),
@@ -146,8 +194,16 @@ impl Grains {
         self.masses.remove(index);
         self.feels_gravity.remove(index);
         self.tones.remove(index);
+        if !self.materials.is_empty() {
+            self.materials.remove(index);
+        }
         self.brought_back.remove(index);
         self.ids.remove(index);
+    }
+
+    /// The number of a grain's material; 0 in a world without materials.
+    pub fn material(&self, index: usize) -> u8 {
+        self.materials.get(index).copied().unwrap_or(0)
     }
 
     /// Number of discs.
@@ -165,7 +221,7 @@ impl Grains {
         0.5 * self.masses[index] * self.radii[index] * self.radii[index]
     }
 
-    /// Grain `index` as a scene would describe it now.
+    /// Grain `index` as a scene would describe it now, except its material and mass.
     pub fn grain(&self, index: usize) -> Grain {
         Grain {
             position: self.positions[index],
@@ -174,6 +230,8 @@ impl Grains {
             angular_velocity: self.angular_velocities[index],
             feels_gravity: self.feels_gravity[index],
             tone: self.tones[index],
+            material: None,
+            mass: None,
         }
     }
 }

@@ -3,6 +3,7 @@
 mod boundary;
 mod grains;
 mod gravity;
+mod materials;
 mod motion;
 mod motion_check;
 mod parameters;
@@ -12,6 +13,8 @@ mod periodic_check;
 pub use boundary::{Boundary, Disc, Edge};
 pub use grains::{Grain, Grains};
 pub use gravity::{Gravity, GravityTurn, TurnCourse, TurningGravity};
+pub(crate) use materials::{Cohesion, PairNumbers, check_name};
+pub use materials::{Material, MaterialPair, materials_of};
 pub(crate) use motion::{Carry, RigidVelocity, direction};
 pub use motion::{Drive, Motion, MotionCourse};
 pub(crate) use parameters::MAX_SUBSTEPS;
@@ -21,6 +24,7 @@ pub use periodic::Periodic;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use self::materials::check_materials;
 use self::motion_check::check_motions;
 use crate::error::{Error, Result};
 
@@ -44,6 +48,12 @@ pub struct World {
     /// Periodic borders, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
+    /// The materials of grains, fixed discs and boundaries.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<Material>,
+    /// Contact laws of pairs of materials that differ from the parameters.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pairs: Vec<MaterialPair>,
     /// The diameter d, the unit of length for relative quantities, m.
     pub mean_diameter: f64,
 }
@@ -59,6 +69,8 @@ impl World {
             gravity,
             gravity_turn: None,
             periodic: None,
+            materials: Vec::new(),
+            pairs: Vec::new(),
             mean_diameter,
         }
     }
@@ -71,6 +83,13 @@ impl World {
         }
         let Self { boundaries, motions, gravity, .. } = self;
         let fixed_discs = self.fixed_discs.len();
+        let walls = [boundaries.len(), fixed_discs];
+        check_materials(&self.materials, &self.pairs, walls, physics)?;
+        let is_listed = |number: &&u8| usize::from(**number) < self.materials.len();
+        if let Some(number) = self.grains.materials.iter().find(|number| !is_listed(number)) {
+            let allowed = "below the number of materials";
+            return Err(Error::value("grains.materials", number, allowed));
+        }
         check_motions(motions, boundaries, fixed_discs, physics.axes, self.periodic)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let fixed = self.fixed_discs.iter().map(|disc| disc.radius);

@@ -36,7 +36,7 @@ settings! {
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
         /// Bond number: C₀ = Bond · m_ij · a (paper eq. 10), where a is [`Parameters::cohesion_acceleration`].
         bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force divided by the effective weight of a \
-            contact, at least 0", {
+            contact, at least 0; pairs of materials may have their own", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
@@ -72,7 +72,8 @@ settings! {
             }),
         }
         /// Restitution ρ, 0 … 1.
-        restitution: f64 = 0.0, "rho" ("RHO"), "Restitution, 0 to 1", {
+        restitution: f64 = 0.0, "rho" ("RHO"), "Restitution, 0 to 1; pairs of materials may have \
+            their own", {
             allowed: "between 0 and 1",
             holds: |value| (0.0..=1.0).contains(&value),
             control: Some(Control {
@@ -83,7 +84,8 @@ settings! {
             }),
         }
         /// Friction coefficient μ.
-        friction: f64 = 0.0, "mu" ("MU"), "Friction, at least 0", {
+        friction: f64 = 0.0, "mu" ("MU"), "Friction, at least 0; pairs of materials may have \
+            their own", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
             needs: Needs::Friction,

@@ -10,13 +10,15 @@ use crate::scene::Scene;
 
 /// Prefixes of the names of facts that a pile does not take from a recording. Settings are not in the list, because
 /// every run asks for its own.
-const OF_THE_PILE: [&str; 8] = [
+const OF_THE_PILE: [&str; 10] = [
     "areal_density",
     "boundaries",
     "gap_tolerance",
     "gravity",
+    "materials",
     "mean_diameter",
     "motions",
+    "pairs",
     "periodic.",
     "physics.",
 ];

@@ -364,13 +364,11 @@ impl Config {
     fn pile_of_recorded(&self, path: &Path, discs: RecordedGrains) -> Result<Scene> {
         let width = self.source.new_pile().box_width_in_diameters;
         let mut pile = pile_of(discs.grains.clone(), width)?;
-        discs.check_masses(path, pile.areal_density)?;
-        let RecordedGrains { fixed_discs, .. } = discs;
-        if !fixed_discs.is_empty() {
+        if !discs.fixed_discs.is_empty() {
             // The rough base of the recording, with its width.
-            pile.fixed_discs = fixed_discs;
+            discs.place_fixed_discs(&mut pile, path)?;
         }
-        Ok(pile)
+        Ok(pile.without_implied_masses())
     }
 
     fn new_pile_on(&self, base: &BaseScene) -> Option<NewPile> {

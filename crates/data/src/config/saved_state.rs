@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::output::{Seal, write_file};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
-use crate::world::Gravity;
+use crate::world::{Grain, Gravity};
 
 /// The header of the files.
 const SEAL: Seal = Seal {
@@ -99,6 +99,15 @@ impl SavedState {
     pub fn as_start(&self) -> Scene {
         let world = self.simulation.world();
         let grains = &world.grains;
+        let material = |index| match grains.material(index) {
+            0 => None,
+            number => Some(world.materials[usize::from(number)].name.clone()),
+        };
+        let grain = |index: usize| Grain {
+            material: material(index),
+            mass: Some(grains.masses[index]),
+            ..grains.grain(index)
+        };
         let turning = world.gravity_turn.as_ref();
         let gravity = turning.map_or(self.scene.gravity, |turning| Gravity::Uniform {
             acceleration: turning.listed,
@@ -108,12 +117,13 @@ impl SavedState {
             gravity_turn: turning
                 .filter(|turning| !turning.turn.is_none())
                 .map(|turning| turning.turn.clone()),
-            grains: (0..grains.len()).map(|index| grains.grain(index)).collect(),
+            grains: (0..grains.len()).map(grain).collect(),
             boundaries: world.boundaries.clone(),
             fixed_discs: world.fixed_discs.clone(),
             motions: world.motions.clone(),
             periodic: world.periodic,
             ..self.scene.clone()
         }
+        .without_implied_masses()
     }
 }

@@ -58,7 +58,7 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
                 start
             }
         };
-        scene = scene.with_settled(grains);
+        scene = scene.with_settled(grains).without_implied_masses();
     }
     if let Some(data) = scene.data.as_mut().and_then(|data| data.folder.as_mut()) {
         *data = folder.join(&*data);
@@ -69,12 +69,12 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
 
 /// The grains of a file for a scene. If the scene lists no fixed discs, it also takes those of the file.
 fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Grain>> {
-    let discs = read_grains(path, step)?;
-    discs.check_masses(path, scene.areal_density)?;
-    let RecordedGrains { grains, fixed_discs, .. } = discs;
+    let mut discs = read_grains(path, step)?;
+    let grains = std::mem::take(&mut discs.grains);
+    let RecordedGrains { fixed_discs, .. } = &discs;
     if scene.fixed_discs.is_empty() {
-        scene.fixed_discs = fixed_discs;
-    } else if !fixed_discs.is_empty() && fixed_discs != scene.fixed_discs {
+        discs.place_fixed_discs(scene, path)?;
+    } else if !fixed_discs.is_empty() && *fixed_discs != scene.fixed_discs {
         let reason = format!(
             "has {} fixed discs that are not those of the scene, but must have none or the same: leave fixed_discs \
              out of the scene to take those of the file",
@@ -93,8 +93,8 @@ pub fn scene_to_toml(scene: &Scene) -> Result<String> {
     toml::to_string(scene).map_err(|error| Error::value("scene", &scene.name, error.to_string()))
 }
 
-/// Reads discs from the text of a CSV file in SI units, with the header `x,y,radius` and optionally `vx,vy,omega`.
-/// Lines that start with `#` are comments. `path` is for messages.
+/// Reads discs from the text of a CSV file in SI units, with the header `x,y,radius` and optionally `vx,vy,omega`,
+/// `mass` or `density`, and `material`. Lines that start with `#` are comments. `path` is for messages.
 ///
 /// # Errors
 /// If a line is not a disc; the message names the line.
@@ -102,7 +102,8 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
     Ok(parse_grains(text, path)?.grains)
 }
 
-/// Text of a CSV file of discs. The numbers read back bit for bit. `comment` comes first, each of its lines after `# `.
+/// Text of a CSV file of discs, without their materials and masses. The numbers read back bit for bit. `comment` comes
+/// first, each of its lines after `# `.
 pub fn write_discs(grains: &[Grain], comment: &str) -> String {
     let mut text = String::new();
     for line in comment.lines() {

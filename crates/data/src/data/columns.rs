@@ -112,10 +112,16 @@ const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     ),
     column("x_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.x)),
     column("y_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.y)),
+    column(
+        "material",
+        "",
+        "name of the material; empty in a scene without materials",
+        Name(|row| row.state.material.into()),
+    ),
 ];
 
 pub(super) fn empty_grains() -> Table {
-    grains_of(&[], &[]).beside(means::of_grains(&[]))
+    grains_of(&[], &[], &[]).beside(means::of_grains(&[]))
 }
 
 pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
@@ -124,13 +130,16 @@ pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     let fixed = fixed_discs(moment).map(|state| (FIXED, state));
     let row = |(kind, state)| GrainTableRow { step, time_secs, kind, state };
     let rows: Vec<GrainTableRow> = moving.chain(fixed).map(row).collect();
-    grains_of(&rows, measures)
+    let materials = &moment.surroundings.materials;
+    let names: Vec<_> = materials.iter().map(|material| material.name.clone()).collect();
+    let names = if names.is_empty() { vec![String::new()] } else { names };
+    grains_of(&rows, measures, &names)
 }
 
-/// Rows with the measures of grains. Fixed discs, which follow, have no measures.
-fn grains_of(rows: &[GrainTableRow], measures: &[GrainMeasures]) -> Table {
+/// Rows with the measures of grains and the names of materials. Fixed discs, which follow, have no measures.
+fn grains_of(rows: &[GrainTableRow], measures: &[GrainMeasures], materials: &[String]) -> Table {
     let measures = Table::new("grains", GrainMeasures::COLUMNS, measures, &[]);
-    Table::new("grains", GRAIN_COLUMNS, rows, &[]).beside(measures)
+    Table::new("grains", GRAIN_COLUMNS, rows, materials).beside(measures)
 }
 
 const CONTACTS: &str = "contacts";

@@ -9,7 +9,7 @@ use super::table::Table;
 use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber};
 use crate::column_spec::{ColumnSpec, column};
 use crate::sim::{GrainState, Moment, MotionView, OtherBody, Surroundings};
-use crate::world::{Boundary, Edge};
+use crate::world::{Boundary, Edge, materials_of};
 
 struct WallTableRow {
     step: u64,
@@ -121,7 +121,9 @@ impl Table {
 /// The fixed discs, with the velocities of their motions.
 pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> + '_ {
     let surroundings = &moment.surroundings;
-    surroundings.fixed_discs.iter().enumerate().map(|(number, disc)| {
+    let discs = &surroundings.fixed_discs;
+    let of_disc = materials_of(&surroundings.materials, |it| &it.fixed_discs, discs.len());
+    discs.iter().zip(of_disc).enumerate().map(|(number, (disc, material))| {
         let motion = surroundings.moving.iter().find(|it| it.fixed_discs.contains(&number));
         GrainState {
             id: moment.first_fixed_id + number as u32,
@@ -134,6 +136,7 @@ pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> +
             mass: f64::INFINITY,
             feels_gravity: false,
             tone: 0,
+            material,
             lost: false,
         }
     })

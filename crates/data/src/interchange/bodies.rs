@@ -315,7 +315,11 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
         Ok(ProblemFile {
             comment: None,
             nc: problem.rows.contacts.len(),
-            mu: Friction::Same(if M::FRICTION { problem.law.friction } else { 0.0 }),
+            mu: match &*problem.rows.frictions {
+                _ if !M::FRICTION => Friction::Same(0.0),
+                [] => Friction::Same(problem.law.friction),
+                each => Friction::Each(each.to_vec()),
+            },
             cone: problem.law.cone(),
             q: free_velocities,
             c0: (problem.law.capture_speed() > 0.0).then(|| cohesions().collect()),

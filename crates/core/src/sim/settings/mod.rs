@@ -12,12 +12,16 @@ pub use spring_dashpot::SpringDashpot;
 pub(super) use spring_dashpot::stable_substeps;
 pub use stepper::{Stepper, StepperInfo};
 
+use std::fmt::Display;
+
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::setting::{About, Control, Group, Needs, Settable, Value};
 use crate::solver::{FrictionModel, METHODS, SolverSettings};
-use crate::world::{FrictionCone, Gravity, Motion, Parameters, Periodic, Physics, World};
+use crate::world::{
+    FrictionCone, Gravity, MaterialPair, Motion, Parameters, Periodic, Physics, World,
+};
 
 /// Settings of a simulation's steps. Their compatibility is checked when a simulation takes them over
 /// ([`Settings::validate`]).
@@ -165,6 +169,7 @@ impl Settings {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
         self.check_shear(world.periodic)?;
+        self.check_pairs(&world.pairs)?;
         (self.stepper.info().check_in)(world, physics, &self.parameters)
     }
 
@@ -220,6 +225,33 @@ impl Settings {
         let takers: Vec<_> = takers.collect();
         let allowed = format!("{} where periodic borders shear", takers.join(" or "));
         Err(Error::value("solver", method, allowed))
+    }
+
+    /// Checks that the stepper and the solver support contact laws by pairs of materials, if there are any.
+    fn check_pairs(&self, pairs: &[MaterialPair]) -> Result<()> {
+        let refuse = |field: &str, found: &dyn Display, takers: Vec<&str>| {
+            let allowed = format!("{} where the scene has pairs of materials", takers.join(" or "));
+            Err(Error::value(field, found, allowed))
+        };
+        let SolverSettings { method, friction_model, .. } = self.solver;
+        match self.stepper.info().takes_pairs {
+            _ if pairs.is_empty() => Ok(()),
+            false => {
+                let takers = Stepper::ALL.iter().filter(|stepper| stepper.info().takes_pairs);
+                refuse("stepper", &self.stepper, names_of(takers))
+            }
+            true if !method.info().takes_pairs => {
+                let takers = METHODS.iter().filter(|info| info.takes_pairs).map(|info| info.name);
+                refuse("solver", &method, takers.collect())
+            }
+            true if friction_model.is_on_cone() => {
+                refuse("friction-model", &friction_model, vec!["coulomb", "tresca"])
+            }
+            true if self.remedies.sequential_impacts => {
+                refuse("sequential-impacts", &"given", vec!["left out"])
+            }
+            true => Ok(()),
+        }
     }
 
     /// The same settings without the remedies and the friction model that the stepper or the solver do not support.

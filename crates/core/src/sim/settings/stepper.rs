@@ -37,6 +37,8 @@ pub struct StepperInfo {
     pub observables: &'static [&'static str],
     /// True if it can move walls driven by a force.
     pub takes_drives: bool,
+    /// True if it supports pairs of materials with their own contact laws.
+    pub takes_pairs: bool,
     /// Refuses parameters that the stepper does not support.
     pub check: fn(&Parameters) -> Result<()>,
     /// Refuses parameters that the stepper does not support in a world.
@@ -59,6 +61,7 @@ impl StepperInfo {
         settings: "",
         observables: &[],
         takes_drives: false,
+        takes_pairs: false,
         check: |_| Ok(()),
         check_in: |_, _, _| Ok(()),
         substeps: |_, _, _| 1,
@@ -102,6 +105,7 @@ const MOREAU: StepperInfo = StepperInfo {
     settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold touch-tolerance solver ordering \
         stop tolerance max-sweeps warm-start friction-model model-solves",
     takes_drives: true,
+    takes_pairs: true,
     ..StepperInfo::WHOLE
 };
 

@@ -8,6 +8,7 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::touch_tolerance::touch_tolerance;
 use crate::sim::turned_bonds;
 use crate::solver::{Approach, Model};
+use crate::world::Parameters;
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     set_up(stage, settings);
@@ -27,12 +28,14 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
     let tolerance = touch_tolerance(stage.state, settings);
     let touching = touching_within(stage.state, tolerance);
-    let rebound = |Approach { velocity, gap, in_touch }| {
+    let rebound = |Approach { velocity, gap, in_touch, restitution }| {
         if !in_touch {
             // It ends the step in touch, so that the next step knows the contact.
             return (gap + touch) / parameters.time_step_secs;
         }
-        let rebound = parameters.restitution_velocity(velocity, gravity_magnitude);
+        let restitution = restitution.unwrap_or(parameters.restitution);
+        let rebound = Parameters { restitution, ..parameters }
+            .restitution_velocity(velocity, gravity_magnitude);
         if tolerance > 0.0 && gap > touching {
             // A pair that reaches contact within the step bounces as a touching pair does.
             let meets = rebound < 0.0 && gap + parameters.time_step_secs * velocity < 0.0;

@@ -206,7 +206,6 @@ impl<const D: usize> Directions<D> {
     fn apply_law<M: Model>(&mut self, problem: &mut StepProblem<M>, compliance: f64) -> f64 {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);
-        let law = problem.law;
         for (number, target) in targets.iter_mut().enumerate() {
             // V contains neither the slide of images nor the motion of surfaces.
             let is_pair = problem.rows.is_pair(number);
@@ -214,6 +213,7 @@ impl<const D: usize> Directions<D> {
                 true => M::slide_along(problem.rows.get(number).normal),
                 false => [0.0, problem.rows.surface_speed(number)],
             };
+            let law = problem.law_of(number);
             let row = problem.rows.get_mut(number);
             let [normal, tangential] = self.velocity::<M>(row, is_pair);
             let opening = normal - away + row.restitution_velocity;

@@ -156,13 +156,13 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 
     #[inline(always)]
-    fn friction(&self, _contact: usize) -> f64 {
-        self.problem.law.friction
+    fn friction(&self, contact: usize) -> f64 {
+        self.problem.law_of(contact).friction
     }
 
     #[inline(always)]
     fn friction_bound(&self, contact: usize, normal: f64) -> f64 {
-        let law = &self.problem.law;
+        let law = self.problem.law_of(contact);
         match law.cone() {
             FrictionCone::Shifted => law.friction_bound(normal),
             FrictionCone::Compressive => {

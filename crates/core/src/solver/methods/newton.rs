@@ -32,6 +32,7 @@ use super::nncg;
 use super::nonlinear_elimination::NonlinearElimination;
 use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;
+use crate::contact::ContactLaw;
 use crate::contact::law::{coulomb, signorini};
 use crate::solver::kinematics::Model;
 use crate::solver::linear::{BlockMatrix, ContactGraph};
@@ -242,6 +243,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 true => rows.pairs[number - fixed_count].velocity(&bodies.now),
                 false => rows.fixed[number].velocity(&bodies.now),
             };
+            let law = rows.law(number, law);
             let row = rows.get_mut(number);
             let [[normal_i, tangent_i], [normal_j, tangent_j]] = M::gradients(row.normal);
             normal_velocity += along(&normal_i, row.i);
@@ -283,23 +285,25 @@ fn assemble<M: Model, const D: usize>(
     vector.clear();
     vector.resize(problem.bodies.now.len(), [0.0; D]);
     guesses.clear();
-    for row in &problem.rows.fixed {
+    for (number, row) in problem.rows.fixed.iter().enumerate() {
         let velocity = row.velocity(&problem.bodies.now);
-        let guess = guess::<M>(problem, row, velocity);
+        let law = problem.law_of(number);
+        let guess = guess::<M>(&law, row, velocity);
         guesses.push(guess);
         let gradients = M::gradients(row.normal);
-        let terms = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
+        let terms = Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients[0]);
         let place = elimination.place_of[row.i as usize];
         terms.add(matrix.diagonal_mut(place), &terms);
         terms.add_load(&mut vector[place as usize]);
     }
     for (row, &block) in problem.rows.pairs.iter().zip(pair_blocks) {
         let velocity = row.velocity(&problem.bodies.now);
-        let guess = guess::<M>(problem, row, velocity);
+        let law = problem.law_of(guesses.len());
+        let guess = guess::<M>(&law, row, velocity);
         guesses.push(guess);
         let gradients = M::gradients(row.normal);
-        let on_i = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
-        let on_j = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[1]);
+        let on_i = Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients[0]);
+        let on_j = Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients[1]);
         let i = elimination.place_of[row.i as usize];
         let j = elimination.place_of[row.j as usize];
         on_i.add_load(&mut vector[i as usize]);
@@ -316,7 +320,7 @@ fn assemble<M: Model, const D: usize>(
 
 /// The next state of a contact according to its law.
 fn guess<M: Model>(
-    problem: &StepProblem<M>,
+    law: &ContactLaw,
     row: &Row<M>,
     [normal_velocity, tangential_velocity]: [f64; 2],
 ) -> Guess {
@@ -324,7 +328,7 @@ fn guess<M: Model>(
     if shifted <= 0.0 {
         return Guess::Open;
     }
-    let bound = if M::FRICTION { problem.law.friction_bound(shifted) } else { 0.0 };
+    let bound = if M::FRICTION { law.friction_bound(shifted) } else { 0.0 };
     if bound == 0.0 {
         return Guess::Slip(0.0);
     }
@@ -350,7 +354,7 @@ struct Terms<const D: usize> {
 impl<const D: usize> Terms<D> {
     #[inline(always)]
     fn new<M: Model>(
-        problem: &StepProblem<M>,
+        law: &ContactLaw,
         row: &Row<M>,
         [normal_velocity, tangential_velocity]: [f64; 2],
         guess: Guess,
@@ -371,8 +375,8 @@ impl<const D: usize> Terms<D> {
                 (0.0, stiffness, stiffness / softness, [normal_change, tangential_change])
             }
             Guess::Slip(sign) => {
-                let slope = sign * problem.law.friction;
-                let rubbing = problem.law.rubbing(shifted + normal_change);
+                let slope = sign * law.friction;
+                let rubbing = law.rubbing(shifted + normal_change);
                 (slope, stiffness, 0.0, [normal_change, slope * rubbing - tangential])
             }
         };

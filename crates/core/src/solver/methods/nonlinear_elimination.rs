@@ -10,7 +10,9 @@
 
 use super::sweep::ImpulseChange;
 use crate::solver::kinematics::Model;
-use crate::solver::problem::{CoulombFriction, FrictionProjection, StepProblem, errors, residual};
+use crate::solver::problem::{
+    ContactRows, CoulombFriction, FrictionProjection, StepProblem, errors, law_of_row, residual,
+};
 
 /// Fraction of the squared residual that the selected contacts have together.
 const HELD: f64 = 0.9;
@@ -42,14 +44,21 @@ impl NonlinearElimination {
         problem.rows.read_impulses(&mut self.saved);
         self.choose(problem);
         let StepProblem { bodies, rows, law, .. } = problem;
-        let project = |trial| CoulombFriction::<false>::project::<M>(law, 0.0, trial);
+        let ContactRows { fixed, pairs, frictions, captures, .. } = rows;
+        let first_pair = fixed.len();
+        let project = |number: usize| {
+            let law = law_of_row([frictions, captures], number, law);
+            move |trial| CoulombFriction::<false>::project::<M>(&law, 0.0, trial)
+        };
         let mut change = ImpulseChange::default();
         for _ in 0..SWEEPS {
             for &number in &self.fixed {
-                rows.fixed[number].solve::<false>(&mut bodies.now, &mut change, project);
+                let project = project(number);
+                fixed[number].solve::<false>(&mut bodies.now, &mut change, project);
             }
             for &number in &self.pairs {
-                rows.pairs[number].solve::<false>(&mut bodies.now, &mut change, project);
+                let project = project(first_pair + number);
+                pairs[number].solve::<false>(&mut bodies.now, &mut change, project);
             }
         }
         // NaN compares false, so it counts as no progress.
@@ -64,8 +73,12 @@ impl NonlinearElimination {
         squares.clear();
         problem.for_each_velocity(&problem.bodies.now, |row, velocity| {
             let restitution = row.restitution_velocity;
-            let [normal, tangential] =
-                errors::<M, f64>(&problem.law, row.impulse(), restitution, velocity);
+            let [normal, tangential] = errors::<M, f64>(
+                &problem.law_of(squares.len()),
+                row.impulse(),
+                restitution,
+                velocity,
+            );
             let mass = row.effective_mass;
             squares.push(mass * mass * (normal * normal + tangential * tangential));
         });

@@ -5,7 +5,8 @@ use super::sweep::ImpulseChange;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{
     Bodies, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow, FrictionProjection,
-    StepProblem, projection_residual, squared_impulses, velocity_error, with_projection,
+    StepProblem, law_of_row, projection_residual, squared_impulses, velocity_error,
+    with_projection,
 };
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
@@ -41,7 +42,7 @@ pub(super) fn tested_sweep<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
 ) -> bool {
-    if problem.law.all_rubs() {
+    if problem.has_one_simple_law() {
         tested::<M, CoulombFriction<true>>(problem, settings, false)
     } else {
         tested::<M, CoulombFriction<false>>(problem, settings, false)
@@ -67,7 +68,7 @@ fn tested<M: Model, P: FrictionProjection>(
 
 /// One pass over all contacts under Coulomb's law.
 pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> ImpulseChange {
-    if problem.law.all_rubs() {
+    if problem.has_one_simple_law() {
         sweep_by::<M, CoulombFriction<true>, MEASURE>(problem, false)
     } else {
         sweep_by::<M, CoulombFriction<false>, MEASURE>(problem, false)
@@ -111,11 +112,13 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     let law = problem.law;
     let lagged = &problem.friction.now;
     let Bodies { now: bodies, .. } = &mut problem.bodies;
-    let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+    let ContactRows { fixed, pairs, frictions, captures, .. } = &mut problem.rows;
+    let own_numbers = [&**frictions, captures];
     let walls = &mut problem.walls;
     let first_pair = fixed.len();
     let project = |number: usize| {
         let lagged = if P::LAGS { lagged[number] } else { 0.0 };
+        let law = if P::TAKES_PAIRS { law_of_row(own_numbers, number, &law) } else { law };
         move |trial| P::project::<M>(&law, lagged, trial)
     };
     let mut change = ImpulseChange::default();

@@ -26,6 +26,7 @@ pub(crate) use self::residual::{
     errors, natural_map, projection_residual, residual_of, squared_impulse, squared_residual_scale,
 };
 pub use self::row_velocities::{RowVelocities, for_each_row, relative_velocities};
+pub(crate) use self::rows::law_of_row;
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
 pub(crate) use self::solved::{is_solved, squared_impulses};
 pub use self::velocity_error::{VelocityError, velocity_error};
@@ -48,7 +49,7 @@ pub struct StepProblem<M: Model> {
     pub bodies: Bodies<M>,
     /// One row per contact.
     pub rows: ContactRows<M>,
-    /// The numbers of the contact law.
+    /// The numbers of the contact law, unless rows have their own ([`StepProblem::law_of`]).
     pub law: ContactLaw,
     /// Fixed bodies whose surfaces move.
     pub(crate) walls: MovingWalls,
@@ -75,13 +76,27 @@ pub struct StepProblem<M: Model> {
 pub struct ProblemNumbers {
     /// Δt, s.
     pub time_step_secs: f64,
-    /// μ.
+    /// μ; with [`RowNumbers`], the largest of all pairs.
     pub friction: f64,
-    /// C₀Δt/m_ij, m/s; 0 without cohesion.
+    /// C₀Δt/m_ij, m/s; 0 without cohesion. With [`RowNumbers`], the largest of all pairs for grains of the mean mass.
     pub capture_speed: f64,
     /// The part of the normal force that friction acts on; the shifted cone if there is no cohesion.
     pub cone: FrictionCone,
 }
+
+/// The numbers of the law of one contact.
+#[derive(Clone, Copy, Debug)]
+pub struct RowNumbers {
+    /// μ.
+    pub friction: f64,
+    /// ρ.
+    pub restitution: f64,
+    /// C₀Δt/m_ij, m/s.
+    pub capture_speed: f64,
+}
+
+/// Computes the numbers of a contact from its effective mass m_ij, kg.
+pub type NumbersOfContact<'a> = &'a dyn Fn(&Contact, f64) -> RowNumbers;
 
 /// Relative motion and gap of a contact's bodies before the step.
 #[derive(Clone, Copy, Debug)]
@@ -92,12 +107,16 @@ pub struct Approach {
     pub gap: f64,
     /// True if the pair touches or is bonded, false if it is only near.
     pub in_touch: bool,
+    /// ρ of the contact's pair of materials, if pairs have their own numbers.
+    pub restitution: Option<f64>,
 }
 
 impl<M: Model> StepProblem<M> {
     /// Sets up a step: free velocities, and rows in the order of the method and its settings. The rows start with the
     /// impulses of `contacts` (warm start) or without impulses. `rebound` gives the term that the law adds to v_n of a
-    /// contact, m/s; `surfaces` are the moving surfaces, if there are any.
+    /// contact, m/s; `surfaces` are the moving surfaces, if there are any. `numbers_of` gives the numbers of each
+    /// contact, if contacts have different ones.
+    #[expect(clippy::too_many_arguments, reason = "all of a step's problem")]
     pub fn prepare(
         &mut self,
         world: &World,
@@ -106,6 +125,7 @@ impl<M: Model> StepProblem<M> {
         settings: &SolverSettings,
         rebound: impl Fn(Approach) -> f64 + Sync,
         surfaces: Option<MovingSurfaces<'_>>,
+        numbers_of: Option<NumbersOfContact<'_>>,
     ) {
         let ProblemNumbers { time_step_secs, friction, capture_speed, cone } = numbers;
         self.law = ContactLaw::new(friction, capture_speed, cone);
@@ -119,8 +139,11 @@ impl<M: Model> StepProblem<M> {
         self.place_bodies(world, time_step_secs);
         let ordering = settings.method.info().order.of_rows(settings.ordering);
         let fixed = self.order.sort(ordering, world, contacts.contacts(), &mut self.rows.contacts);
-        self.rows.captures.clear();
-        if contacts.looks_ahead() && capture_speed > 0.0 {
+        let ContactRows { captures, frictions, restitutions, .. } = &mut self.rows;
+        [captures, frictions, restitutions].into_iter().for_each(Vec::clear);
+        if let Some(numbers_of) = numbers_of {
+            self.take_numbers(world, contacts, numbers_of);
+        } else if contacts.looks_ahead() && capture_speed > 0.0 {
             let in_touch = |&index: &u32| contacts.is_in_touch(index as usize);
             let capture = |index| if in_touch(index) { capture_speed } else { 0.0 };
             self.rows.captures.extend(self.rows.contacts.iter().map(capture));
@@ -133,6 +156,28 @@ impl<M: Model> StepProblem<M> {
         }
         self.form_velocities();
         self.begin_friction(settings.friction_model);
+    }
+
+    /// Records the numbers of each row's law. A pair that is only near does not pull.
+    fn take_numbers(
+        &mut self,
+        world: &World,
+        list: &ContactList,
+        numbers_of: NumbersOfContact<'_>,
+    ) {
+        let ContactRows { contacts, captures, frictions, restitutions, .. } = &mut self.rows;
+        let masses = &world.grains.masses;
+        for index in contacts.iter().map(|&index| index as usize) {
+            let contact = &list.contacts()[index];
+            let mass = masses[contact.grain as usize];
+            // Body indices: grains come first.
+            let other = masses.get(contact.other as usize);
+            let effective_mass = other.map_or(mass, |other| mass * (other / (mass + other)));
+            let numbers = numbers_of(contact, effective_mass);
+            frictions.push(numbers.friction);
+            restitutions.push(numbers.restitution);
+            captures.push(if list.is_in_touch(index) { numbers.capture_speed } else { 0.0 });
+        }
     }
 
     /// Stores the bodies' velocities at the beginning of the step, and after gravity alone has acted.
@@ -163,13 +208,14 @@ impl<M: Model> StepProblem<M> {
         let row = |number: usize, velocity: f64, effective_mass: f64| {
             let index = self.rows.contacts[number] as usize;
             let contact = &contacts.contacts()[index];
-            let approach =
-                Approach { velocity, gap: contact.gap, in_touch: contacts.is_in_touch(index) };
+            let restitution = self.rows.restitutions.get(number).copied();
+            let in_touch = contacts.is_in_touch(index);
+            let approach = Approach { velocity, gap: contact.gap, in_touch, restitution };
             let start = if warm_start { contacts.impulses()[index] } else { Impulse::default() };
             let shifted_impulse =
                 law::signorini(start.normal / effective_mass + self.capture(number));
             let tangential_impulse = if M::FRICTION {
-                let bound = self.law.friction_bound(shifted_impulse);
+                let bound = self.law_of(number).friction_bound(shifted_impulse);
                 law::coulomb(start.tangential / effective_mass, bound)
             } else {
                 0.0
@@ -223,8 +269,9 @@ impl<M: Model> StepProblem<M> {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
         if M::FRICTION {
-            let law = self.law;
-            for row in self.rows.iter_mut() {
+            for number in 0..self.rows.len() {
+                let law = self.law_of(number);
+                let row = self.rows.get_mut(number);
                 let bound = law.friction_bound(row.shifted_impulse);
                 row.tangential_impulse = law::coulomb(row.tangential_impulse, bound);
             }
@@ -312,6 +359,17 @@ impl<M: Model> StepProblem<M> {
     #[inline(always)]
     pub fn capture(&self, number: usize) -> f64 {
         self.rows.capture(number, &self.law)
+    }
+
+    /// The contact law of row `number`.
+    #[inline(always)]
+    pub fn law_of(&self, number: usize) -> ContactLaw {
+        self.rows.law(number, &self.law)
+    }
+
+    /// True if the tip of the cone is at 0 and all rows have the same law.
+    pub(crate) fn has_one_simple_law(&self) -> bool {
+        self.law.all_rubs() && self.rows.frictions.is_empty()
     }
 
     /// (λ_n, λ_t) of row `number`, m/s.

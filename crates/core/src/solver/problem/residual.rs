@@ -39,7 +39,8 @@ fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> 
         let opening = now[0] + row.restitution_velocity;
         let [normal, tangential] = row.impulse();
         let trial = [normal - opening, tangential - compliance * now[1]];
-        let allowed = P::project::<M>(&problem.law, problem.friction.now[number], trial);
+        let law = problem.law_of(number);
+        let allowed = P::project::<M>(&law, problem.friction.now[number], trial);
         sums.add::<M>(row, [normal - allowed[0], tangential - allowed[1]], &motion);
     };
     sum_of_rows(problem, add_error, Sums::add_all)
@@ -122,7 +123,8 @@ impl Sums {
         motion: &RowVelocities,
     ) {
         let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);
-        let errors = errors::<M, f64>(&problem.law, row.impulse(), row.restitution_velocity, now);
+        let law = problem.law_of(number);
+        let errors = errors::<M, f64>(&law, row.impulse(), row.restitution_velocity, now);
         self.add::<M>(row, errors, motion);
     }
 

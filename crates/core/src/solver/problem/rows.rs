@@ -132,9 +132,13 @@ pub struct ContactRows<M: Model> {
     pub pairs: Vec<PairRow<M>>,
     /// The contact of each row.
     pub contacts: Vec<u32>,
-    /// The capture speed of each row, m/s, if rows have different ones (law `range`); else empty. Sweeps do not need it
-    /// because they use σ alone.
+    /// The capture speed of each row, m/s, if rows have different ones (law `range`, pairs of materials); else empty.
+    /// Sweeps in the shifted cone do not need it because they use σ alone.
     pub captures: Vec<f64>,
+    /// μ of each row if pairs of materials have their own numbers; else empty.
+    pub frictions: Vec<f64>,
+    /// ρ of each row if pairs of materials have their own numbers; else empty.
+    pub restitutions: Vec<f64>,
 }
 
 impl<M: Model> ContactRows<M> {
@@ -154,6 +158,8 @@ impl<M: Model> ContactRows<M> {
         self.pairs.clear();
         self.contacts.clear();
         self.captures.clear();
+        self.frictions.clear();
+        self.restitutions.clear();
     }
 
     /// The rows in the order of their numbers.
@@ -207,6 +213,12 @@ impl<M: Model> ContactRows<M> {
         if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
     }
 
+    /// The law of row `number`: `law`, or with the numbers of the row's pair of materials.
+    #[inline(always)]
+    pub(crate) fn law(&self, number: usize, law: &ContactLaw) -> ContactLaw {
+        law_of_row([&self.frictions, &self.captures], number, law)
+    }
+
     /// Adds a copy of row `number` of `others`, modified by `change`. The copy's entry in `contacts` is `number`, not
     /// the contact.
     pub(crate) fn push_copy(
@@ -233,5 +245,18 @@ impl<M: Model> ContactRows<M> {
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));
+    }
+}
+
+/// The law of row `number`: `law`, or with the row's own μ and capture speed (m/s), if these lists are not empty.
+#[inline(always)]
+pub(crate) fn law_of_row(
+    [frictions, captures]: [&[f64]; 2],
+    number: usize,
+    law: &ContactLaw,
+) -> ContactLaw {
+    match frictions.get(number) {
+        None => *law,
+        Some(&friction) => ContactLaw::new(friction, captures[number], law.cone()),
     }
 }

@@ -133,7 +133,8 @@ impl ErrorSums {
         } else {
             (normal + row.restitution_velocity, lagged * across.abs())
         };
-        let least = if model.is_on_cone() { problem.law.friction * across.abs() } else { 0.0 };
+        let least =
+            if model.is_on_cone() { problem.law_of(number).friction * across.abs() } else { 0.0 };
         let lacking = (least - opening).positive_part();
         let of_normal = shifted * (opening + 2.0 * lacking) + lacking * lacking;
         self.add(problem, number, row, of_normal + rubbing + tangential * across, lacking);
@@ -154,7 +155,7 @@ impl ErrorSums {
         let lacking = (-opening).positive_part();
         let mut of_contact = shifted * (opening + 2.0 * lacking) + lacking * lacking;
         if M::FRICTION {
-            let bound = problem.law.friction_bound(shifted);
+            let bound = problem.law_of(number).friction_bound(shifted);
             let allowed = law::coulomb(tangential, bound);
             let outside = (tangential - allowed).abs();
             of_contact += bound * across.abs() + allowed * across;

@@ -178,7 +178,7 @@ impl<M: Model> StepProblem<M> {
     ) {
         let Self { rows, bodies, walls, .. } = self;
         walls.driven.extend(surfaces.driven);
-        for (row, &index) in rows.fixed.iter_mut().zip(&rows.contacts) {
+        for (number, (row, &index)) in rows.fixed.iter_mut().zip(&rows.contacts).enumerate() {
             let contact = &contacts.contacts()[index as usize];
             // Without friction, sliding along a surface has no effect.
             let surface = (surfaces.of)(contact).map(|surface| match M::FRICTION {
@@ -191,7 +191,8 @@ impl<M: Model> StepProblem<M> {
             let in_touch = contacts.is_in_touch(index as usize);
             let speed_before = surface.map_or(0.0, |surface| surface.before.dot(contact.normal));
             let velocity = velocity - speed_before;
-            let approach = Approach { velocity, gap: contact.gap, in_touch };
+            let restitution = rows.restitutions.get(number).copied();
+            let approach = Approach { velocity, gap: contact.gap, in_touch, restitution };
             row.restitution_velocity = rebound(approach) - speed;
             walls.speeds.push(speed);
             let added = [row.restitution_velocity, row.surface_speed];

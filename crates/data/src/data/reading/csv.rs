@@ -8,7 +8,7 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::rows::{
-    DiscRow, LEFT_OUT, NUMBERS, RecordedGrains, discs_of_rows, has_needed, known_names,
+    DiscRow, LEFT_OUT, NUMBERS, OF_GRAINS, RecordedGrains, discs_of_rows, has_needed, known_names,
     no_such_step, unknown_of,
 };
 use crate::data::csv::COMMENT;
@@ -48,6 +48,7 @@ struct CsvColumns {
     step: Option<usize>,
     id: Option<usize>,
     kind: Option<usize>,
+    material: Option<usize>,
     numbers: [Option<usize>; NUMBERS.len()],
 }
 
@@ -113,8 +114,8 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
             return refuse(format!("the header line names {twice} twice, but must name it once"));
         }
         let place = |name: &str| all.iter().position(|there| there == name);
-        let (step, id, kind) = (place("step"), place("id"), place("kind"));
-        Ok(CsvColumns { all: all.len(), step, id, kind, numbers: NUMBERS.map(place) })
+        let [step, id, kind, material] = ["step", "id", "kind", "material"].map(place);
+        Ok(CsvColumns { all: all.len(), step, id, kind, material, numbers: NUMBERS.map(place) })
     }
 
     fn row(&self, places: &CsvColumns, record: &StringRecord) -> Result<DiscRow> {
@@ -127,7 +128,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
             let Some(place) = place else { continue };
             let said = record.get(place).unwrap_or_default();
             // Fixed discs have no mass.
-            if name == "mass" && said.is_empty() {
+            if OF_GRAINS.contains(&name) && said.is_empty() {
                 continue;
             }
             *number = said.parse().map_err(|_| {
@@ -135,8 +136,10 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
             })?;
         }
         let id = places.id.map(|place| self.whole(record, place, "id")).transpose()?;
-        let kind = places.kind.and_then(|place| record.get(place)).map(str::to_owned);
-        Ok(DiscRow { place: byte_of(record), id, kind, numbers })
+        let word = |place: Option<usize>| record.get(place?).map(str::to_owned);
+        let (kind, material) = (word(places.kind), word(places.material));
+        let material = material.filter(|name| !name.is_empty());
+        Ok(DiscRow { place: byte_of(record), id, kind, material, numbers })
     }
 
     fn whole(&self, record: &StringRecord, place: usize, name: &str) -> Result<u64> {

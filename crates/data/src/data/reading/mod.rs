@@ -113,7 +113,8 @@ fn read_parts(
     Err(Error::file(path, reason))
 }
 
-/// The discs in columns with the names of a recording: numbers and, if present, the counts `id` and the words `kind`.
+/// The discs in columns with the names of a recording: numbers and, if present, the counts `id` and the
+/// words `kind` and `material`.
 /// `what` is the name of the source in messages.
 ///
 /// ```
@@ -144,9 +145,11 @@ pub fn grains_of(what: &Path, columns: &[(String, Values)]) -> Result<RecordedGr
                     format!("{name} has {found} rows, but must have {rows}, as {first} has");
                 return Err(refuse(reason));
             }
-            ("id", Values::Counts(_)) | ("kind", Values::Words { .. }) => {}
+            ("id", Values::Counts(_)) | ("kind" | "material", Values::Words { .. }) => {}
             ("id", _) => return Err(refuse("id has no counts, but must be of them".into())),
-            ("kind", _) => return Err(refuse("kind has no words, but must be of them".into())),
+            ("kind" | "material", _) => {
+                return Err(refuse(format!("{name} has no words, but must be of them")));
+            }
             _ => {}
         }
     }
@@ -154,11 +157,12 @@ pub fn grains_of(what: &Path, columns: &[(String, Values)]) -> Result<RecordedGr
         |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| values);
     let numbers = NUMBERS.map(column);
     let ids = column("id").map(|ids| if let Values::Counts(ids) = ids { &ids[..] } else { &[] });
-    let kinds = column("kind");
+    let word = |name: &str, at: usize| column(name)?.word(at).map(str::to_owned);
     let row = |at: usize| DiscRow {
         place: at as u64,
         id: ids.map(|ids| ids[at]),
-        kind: kinds.and_then(|kinds| kinds.word(at)).map(str::to_owned),
+        kind: word("kind", at),
+        material: word("material", at).filter(|name| !name.is_empty()),
         numbers: std::array::from_fn(|place| {
             numbers[place].map_or(LEFT_OUT[place], |numbers| numbers.number(at))
         }),

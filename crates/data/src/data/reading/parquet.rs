@@ -68,15 +68,18 @@ impl ParquetFile {
 
     fn disc_rows(&self, first_place: u64, chosen: &[usize]) -> Result<Vec<DiscRow>> {
         let ids = self.whole("id")?;
-        let kinds = match self.column("kind")? {
-            None => None,
-            Some(Decoded::Words(words)) => Some(words),
-            Some(_) => return Err(self.wrong_kind("kind", "words")),
+        let words = |name: &str| match self.column(name)? {
+            None => Ok(None),
+            Some(Decoded::Words(words)) => Ok(Some(words)),
+            Some(_) => Err(self.wrong_kind(name, "words")),
         };
+        let (kinds, materials) = (words("kind")?, words("material")?);
+        let word = |words: &Option<Vec<Option<String>>>, row: usize| words.as_ref()?[row].clone();
         let row = |&row: &usize| DiscRow {
             place: first_place + row as u64,
             id: ids.as_ref().map(|ids| ids[row]),
-            kind: kinds.as_ref().and_then(|kinds| kinds[row].clone()),
+            kind: word(&kinds, row),
+            material: word(&materials, row).filter(|name| !name.is_empty()),
             numbers: LEFT_OUT,
         };
         let mut rows: Vec<DiscRow> = chosen.iter().map(row).collect();

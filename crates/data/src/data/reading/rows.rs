@@ -7,17 +7,20 @@ use glam::DVec2;
 
 use crate::data::columns::{FIXED, GRAIN, KINDS, LOST, empty_grains};
 use crate::error::{Error, Result};
+use crate::scene::Scene;
 use crate::world::{Disc, Grain};
 
 /// Columns that every file of discs needs.
 const NEEDED: [&str; 3] = ["x", "y", "radius"];
-/// The numeric columns that are read, mass last.
-pub(super) const NUMBERS: [&str; 7] = ["x", "y", "radius", "vx", "vy", "omega", "mass"];
-/// The defaults for missing columns. A mass of NaN means that it is not given.
-pub(super) const LEFT_OUT: [f64; NUMBERS.len()] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN];
-/// Relative difference of masses that counts as rounding. If it is smaller, masses that were written with few digits
-/// are refused. If it is larger, a scene may use other masses than its file gives.
-const SAME_MASS: f64 = 1e-3;
+/// The numeric columns that are read, mass and areal density last.
+pub(super) const NUMBERS: [&str; 8] = ["x", "y", "radius", "vx", "vy", "omega", "mass", DENSITY];
+/// The areal density of a grain, kg/m²: a column that recordings do not have.
+const DENSITY: &str = "density";
+/// The numbers of [`NUMBERS`] that fixed discs do not have.
+pub(super) const OF_GRAINS: [&str; 2] = ["mass", DENSITY];
+/// The defaults for missing columns. NaN means that a mass or density is not given.
+pub(super) const LEFT_OUT: [f64; NUMBERS.len()] =
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN, f64::NAN];
 /// Largest number of steps in a message.
 const MOST_LISTED: usize = 8;
 
@@ -28,35 +31,32 @@ pub struct RecordedGrains {
     pub grains: Vec<Grain>,
     /// The discs that do not move.
     pub fixed_discs: Vec<Disc>,
-    /// Mass of each grain over its area, kg/m², if masses are given. It is the same for all grains.
-    pub areal_density: Option<f64>,
+    /// Name of the material of each fixed disc, if the file gives one.
+    pub disc_materials: Vec<Option<String>>,
 }
 
 impl RecordedGrains {
     /// The numeric columns of discs. The columns `id` and `kind` are also read.
     pub const NUMBERS: [&str; NUMBERS.len()] = NUMBERS;
 
-    /// Refuses grains whose masses in a file differ from those of a scene with this areal density (kg/m²). `path` is
-    /// for messages.
+    /// Gives the fixed discs to a scene, with their materials.
     ///
     /// # Errors
-    /// Names both densities.
-    pub fn check_masses(&self, path: &Path, areal_density: f64) -> Result<()> {
-        let Some(found) = self.areal_density else { return Ok(()) };
-        if is_near(found, areal_density) {
-            return Ok(());
+    /// If the scene does not list the material of a disc. `path` is for messages.
+    pub fn place_fixed_discs(self, scene: &mut Scene, path: &Path) -> Result<()> {
+        for (number, name) in self.disc_materials.into_iter().enumerate() {
+            let Some(name) = name else { continue };
+            let named = scene.materials.iter_mut().find(|material| material.name == name);
+            let Some(material) = named else {
+                let reason =
+                    format!("the material of a fixed disc is {name}, but must be one of the scene");
+                return Err(Error::file(path, reason));
+            };
+            material.fixed_discs.push(number);
         }
-        let reason = format!(
-            "mass is {found:.6e} kg per m² of a disc, but must be left out or that of the scene, which has an \
-             areal_density of {areal_density} kg/m²: a scene file can have another"
-        );
-        Err(Error::file(path, reason))
+        scene.fixed_discs = self.fixed_discs;
+        Ok(())
     }
-}
-
-/// True if two masses or densities differ only by rounding. NaN compares false.
-fn is_near(one: f64, other: f64) -> bool {
-    (one - other).abs() <= SAME_MASS * other.abs()
 }
 
 /// One row of a file, before the checks.
@@ -67,6 +67,8 @@ pub(super) struct DiscRow {
     pub id: Option<u64>,
     /// The word in the column `kind`. Without the column, the row is a grain.
     pub kind: Option<String>,
+    /// The word in the column `material`, unless it is empty.
+    pub material: Option<String>,
     /// In the order of [`NUMBERS`].
     pub numbers: [f64; NUMBERS.len()],
 }
@@ -92,12 +94,13 @@ pub(super) fn check_names(path: &Path, names: &[String]) -> Result<()> {
 /// The first name that is not a column of grains.
 pub(super) fn unknown_of(names: &[String]) -> Option<&String> {
     let known = empty_grains();
-    names.iter().find(|name| known.column(name).is_none())
+    names.iter().find(|name| known.column(name).is_none() && *name != DENSITY)
 }
 
 /// The names of all columns of grains.
 pub(super) fn known_names() -> String {
-    empty_grains().columns.iter().map(|column| column.name).collect::<Vec<_>>().join(", ")
+    let names = empty_grains().columns.into_iter().map(|column| column.name);
+    names.chain([DENSITY]).collect::<Vec<_>>().join(", ")
 }
 
 /// Error for a file that has no frame of a step, only the steps `known`, in ascending order.
@@ -125,7 +128,6 @@ pub(super) fn discs_of_rows(
 ) -> Result<RecordedGrains> {
     let (mut grains, mut fixed_discs) = (Vec::new(), Vec::new());
     let mut by_id = HashMap::new();
-    let mut areal_density = None;
     for row in rows {
         let refuse = |reason: String| {
             let (path, place) = place(row.place);
@@ -145,48 +147,53 @@ pub(super) fn discs_of_rows(
         if kind == KINDS[LOST] {
             continue;
         }
-        let [x, y, radius, vx, vy, omega, mass] = row.numbers;
+        let [x, y, radius, vx, vy, omega, mass, density] = row.numbers;
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(refuse(format!("radius is {radius}, but must be finite and > 0")));
         }
         let mut numbers = NUMBERS.iter().zip(row.numbers);
         if let Some((name, value)) =
-            numbers.find(|(name, value)| **name != "mass" && !value.is_finite())
+            numbers.find(|(name, value)| !OF_GRAINS.contains(name) && !value.is_finite())
         {
             return Err(refuse(format!("{name} is {value}, but must be finite")));
         }
         let position = DVec2::new(x, y);
         if kind == KINDS[FIXED] {
-            fixed_discs.push((row.id, Disc { position, radius }));
+            fixed_discs.push((row.id, (Disc { position, radius }, row.material)));
         } else {
-            if !mass.is_nan() {
-                let area = std::f64::consts::PI * radius * radius;
-                let density = *areal_density.get_or_insert(mass / area);
-                if !(is_near(mass, density * area) && mass > 0.0 && mass.is_finite()) {
-                    let allowed = if density > 0.0 && density.is_finite() {
-                        format!(
-                            "{:.6e}, as the first grain has {density:.6e} kg/m²",
-                            density * area
-                        )
-                    } else {
-                        "finite and > 0".to_owned()
-                    };
+            let area = std::f64::consts::PI * radius * radius;
+            let given = [("mass", mass, "kg", mass), (DENSITY, density, "kg/m²", density * area)];
+            let mut given = given.into_iter().filter(|(_, value, ..)| !value.is_nan());
+            let mass = match (given.next(), given.next()) {
+                (Some((name, value, unit, _)), _) if !(value > 0.0 && value.is_finite()) => {
                     return Err(refuse(format!(
-                        "mass is {mass} kg, but must be left out or {allowed}: all grains of a scene have the \
-                         same areal_density"
+                        "{name} is {value} {unit}, but must be left out or finite and > 0"
                     )));
                 }
-            }
+                (Some(_), Some((name, value, unit, _))) => {
+                    return Err(refuse(format!(
+                        "{name} is {value} {unit}, but must be left out where a mass is given"
+                    )));
+                }
+                (mass, None) => mass.map(|(.., mass)| mass),
+                (None, Some(_)) => None,
+            };
             let (velocity, angular_velocity) = (DVec2::new(vx, vy), omega);
-            let grain = Grain { velocity, angular_velocity, ..Grain::at_rest(position, radius) };
+            let grain = Grain {
+                velocity,
+                angular_velocity,
+                material: row.material,
+                mass,
+                ..Grain::at_rest(position, radius)
+            };
             grains.push((row.id, grain));
         }
     }
     if grains.is_empty() {
         return Err(Error::file(path, "holds no disc, but must hold at least one"));
     }
-    let (grains, fixed_discs) = (by_their_ids(grains), by_their_ids(fixed_discs));
-    Ok(RecordedGrains { grains, fixed_discs, areal_density })
+    let (fixed_discs, disc_materials) = by_their_ids(fixed_discs).into_iter().unzip();
+    Ok(RecordedGrains { grains: by_their_ids(grains), fixed_discs, disc_materials })
 }
 
 /// Sorts by ids; without ids, keeps the order.

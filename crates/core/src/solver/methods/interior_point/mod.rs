@@ -103,7 +103,7 @@ fn convex<M: Model, S: Shape>(
 }
 
 /// Follows the path of Coulomb's law as far as possible, and then lets another method continue. The compressive cone
-/// has a corner at σ = c that the path cannot pass.
+/// has a corner at σ = c that the path cannot pass, and contacts on the path have one μ.
 fn coulomb<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
@@ -113,6 +113,9 @@ fn coulomb<M: Model>(
     let InteriorMemory { two, three, .. } = memory;
     let report = match M::DEGREES {
         _ if problem.law.cone() == FrictionCone::Compressive => SolveReport::default(),
+        _ if problem.rows.frictions.iter().any(|&own| own != problem.law.friction) => {
+            SolveReport::default()
+        }
         2 => InteriorPoint::<M, Leaning, 2>::new(problem, settings, two).follow_path(),
         _ => InteriorPoint::<M, Leaning, 3>::new(problem, settings, three).follow_path(),
     };
