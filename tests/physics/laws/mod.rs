@@ -8,6 +8,7 @@ mod impacts;
 mod lost_grains;
 mod moments;
 mod pyramid;
+mod rolling;
 mod slopes;
 mod touch_tolerance;
 mod turning_pairs;

@@ -157,6 +157,7 @@ impl<'a, M: Model> Stage<'a, M> {
         let numbers = ProblemNumbers {
             time_step_secs,
             friction: parameters.friction,
+            rolling_friction: parameters.rolling_friction,
             capture_speed,
             cone: cone_of(*physics, parameters),
         };

@@ -1,6 +1,8 @@
 //! Chooses the model that a step is compiled for, and keeps the problems of each model.
 
-use super::kinematics::{Line, Model, Plane, ShearedPlane, SmoothPlane, SpinningPlane};
+use super::kinematics::{
+    Line, Model, Plane, RollingPlane, ShearedPlane, SmoothPlane, SpinningPlane,
+};
 use super::methods::Memory;
 use super::problem::StepProblem;
 use crate::world::{FrictionCone, Parameters, Periodic, Physics};
@@ -16,6 +18,8 @@ pub struct ModelParts {
     pub friction: bool,
     /// True if grains turn; without friction nothing turns them.
     pub rotation: bool,
+    /// True if contacts resist rolling.
+    pub rolling: bool,
 }
 
 impl ModelParts {
@@ -31,6 +35,7 @@ impl ModelParts {
             sheared: periodic.is_some_and(Periodic::is_sheared),
             friction: physics.friction && parameters.friction > 0.0,
             rotation: physics.rotation,
+            rolling: physics.rotation && parameters.rolling_friction > 0.0,
         }
     }
 }
@@ -43,6 +48,7 @@ macro_rules! with_model {
         $crate::with_model!(@ $parts, $M, $work,
             { sheared: true, .. } => ShearedPlane,
             { axes: 1, .. } => Line,
+            { rolling: true, .. } => RollingPlane,
             { friction: false, .. } => SmoothPlane,
             { rotation: false, .. } => Plane,
             { .. } => SpinningPlane,
@@ -81,6 +87,7 @@ pub struct Slots {
     smooth_plane: Slot<SmoothPlane>,
     plane: Slot<Plane>,
     spinning_plane: Slot<SpinningPlane>,
+    rolling_plane: Slot<RollingPlane>,
     sheared_plane: Slot<ShearedPlane>,
 }
 
@@ -99,4 +106,4 @@ macro_rules! slotted {
         })*
     };
 }
-slotted!(Line: line, SmoothPlane: smooth_plane, Plane: plane, SpinningPlane: spinning_plane, ShearedPlane: sheared_plane);
+slotted!(Line: line, SmoothPlane: smooth_plane, Plane: plane, SpinningPlane: spinning_plane, RollingPlane: rolling_plane, ShearedPlane: sheared_plane);

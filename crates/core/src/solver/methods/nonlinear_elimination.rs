@@ -46,10 +46,23 @@ impl NonlinearElimination {
         let mut change = ImpulseChange::default();
         for _ in 0..SWEEPS {
             for &number in &self.fixed {
-                rows.fixed[number].solve::<false>(&mut bodies.now, &mut change, project);
+                let row = &mut rows.fixed[number];
+                row.solve::<false>(&mut bodies.now, &mut change, project);
+                if M::ROLLING
+                    && let Some(rolling) = rows.rolling.get_mut(number)
+                {
+                    row.solve_rolling::<false>(rolling, None, law, &mut bodies.now, &mut change);
+                }
             }
             for &number in &self.pairs {
-                rows.pairs[number].solve::<false>(&mut bodies.now, &mut change, project);
+                let row = &mut rows.pairs[number];
+                row.solve::<false>(&mut bodies.now, &mut change, project);
+                if M::ROLLING
+                    && let Some(rolling) = rows.rolling.get_mut(rows.fixed.len() + number)
+                {
+                    let share = Some(row.share);
+                    row.solve_rolling::<false>(rolling, share, law, &mut bodies.now, &mut change);
+                }
             }
         }
         // NaN compares false, so it counts as no progress.
@@ -69,6 +82,12 @@ impl NonlinearElimination {
             let mass = row.effective_mass;
             squares.push(mass * mass * (normal * normal + tangential * tangential));
         });
+        for (number, row) in problem.rows() {
+            if let Some((rolling, velocity)) = problem.rolling(number, row, &problem.bodies.now) {
+                let error = rolling.error(&problem.law, row.shifted_impulse, velocity);
+                squares[number] += (row.effective_mass * error).powi(2);
+            }
+        }
         by_square.clear();
         by_square.extend(0..squares.len());
         by_square.sort_unstable_by(|&one, &other| squares[other].total_cmp(&squares[one]));

@@ -5,7 +5,7 @@ use super::sweep::ImpulseChange;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{
     Bodies, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow, FrictionProjection,
-    StepProblem, projection_residual, squared_impulses, velocity_error, with_projection,
+    PairRow, StepProblem, projection_residual, squared_impulses, velocity_error, with_projection,
 };
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
@@ -111,9 +111,12 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     let law = problem.law;
     let lagged = &problem.friction.now;
     let Bodies { now: bodies, .. } = &mut problem.bodies;
-    let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+    let ContactRows { fixed, pairs, rolling, .. } = &mut problem.rows;
     let walls = &mut problem.walls;
     let first_pair = fixed.len();
+    // The list is empty without rolling friction.
+    let fixed_count = first_pair.min(rolling.len());
+    let (rolling_fixed, rolling_pairs) = rolling.split_at_mut(fixed_count);
     let project = |number: usize| {
         let lagged = if P::LAGS { lagged[number] } else { 0.0 };
         move |trial| P::project::<M>(&law, lagged, trial)
@@ -129,10 +132,23 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
             } else {
                 row.solve::<MEASURE>(bodies, change, project(number));
             }
+            if M::ROLLING
+                && let Some(rolling) = rolling_fixed.get_mut(number)
+            {
+                row.solve_rolling::<MEASURE>(rolling, None, &law, bodies, change);
+            }
         };
+    let mut solve_pair = |number: usize, row: &mut PairRow<M>, bodies: &mut [_], change: &mut _| {
+        row.solve::<MEASURE>(bodies, change, project(first_pair + number));
+        if M::ROLLING
+            && let Some(rolling) = rolling_pairs.get_mut(number)
+        {
+            row.solve_rolling::<MEASURE>(rolling, Some(row.share), &law, bodies, change);
+        }
+    };
     if backward {
         for (number, row) in pairs.iter_mut().enumerate().rev() {
-            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            solve_pair(number, row, bodies, &mut change);
         }
         for (number, row) in fixed.iter_mut().enumerate().rev() {
             solve_fixed(number, row, bodies, &mut change);
@@ -142,7 +158,7 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
             solve_fixed(number, row, bodies, &mut change);
         }
         for (number, row) in pairs.iter_mut().enumerate() {
-            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            solve_pair(number, row, bodies, &mut change);
         }
     }
     if DRIVEN {

@@ -2,6 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
+use super::rolling::Rolling;
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 
@@ -135,6 +136,8 @@ pub struct ContactRows<M: Model> {
     /// The capture speed of each row, m/s, if rows have different ones (law `range`); else empty. Sweeps do not need it
     /// because they use σ alone.
     pub captures: Vec<f64>,
+    /// The rolling resistance of each row; empty without rolling friction.
+    pub rolling: Vec<Rolling>,
 }
 
 impl<M: Model> ContactRows<M> {
@@ -154,6 +157,7 @@ impl<M: Model> ContactRows<M> {
         self.pairs.clear();
         self.contacts.clear();
         self.captures.clear();
+        self.rolling.clear();
     }
 
     /// The rows in the order of their numbers.
@@ -229,9 +233,10 @@ impl<M: Model> ContactRows<M> {
         self.contacts.push(number as u32);
     }
 
-    /// Copies (σ, λ_t) of all rows, m/s. Clears `impulses` first.
+    /// Copies (σ, λ_t) of all rows, m/s, then (ψ, 0) of those that resist rolling. Clears `impulses` first.
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));
+        impulses.extend(self.rolling.iter().map(|rolling| [rolling.impulse, 0.0]));
     }
 }
