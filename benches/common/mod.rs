@@ -18,7 +18,9 @@ pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProble
     let (world, parameters) = (simulation.world(), simulation.parameters());
     let Parameters { time_step_secs, friction, restitution, cone, .. } = *parameters;
     let capture_speed = parameters.capture_speed(world.gravity.magnitude());
-    let numbers = ProblemNumbers { time_step_secs, friction, capture_speed, cone };
+    let rolling_friction = 0.0;
+    let numbers =
+        ProblemNumbers { time_step_secs, friction, rolling_friction, capture_speed, cone };
     let rebound = |approach: Approach| restitution * approach.velocity;
     let mut problem = StepProblem::default();
     problem.prepare(world, simulation.contacts(), numbers, settings, rebound, None, None);

@@ -44,6 +44,7 @@ class _Settings(TypedDict):
     rho: float
     mu: float
     cone: Literal["shifted", "compressive"]
+    rolling_friction: float
     restitution_threshold: float
     debonding_distance: float
     touch_tolerance: float
@@ -72,6 +73,7 @@ class _Changes(TypedDict, total=False):
     rho: _Float | None
     mu: _Float | None
     cone: Literal["shifted", "compressive"] | None
+    rolling_friction: _Float | None
     restitution_threshold: _Float | None
     debonding_distance: _Float | None
     touch_tolerance: _Float | None
@@ -100,6 +102,7 @@ class _Attributes:
     rho: float
     mu: float
     cone: Literal["shifted", "compressive"]
+    rolling_friction: float
     restitution_threshold: float
     debonding_distance: float
     touch_tolerance: float

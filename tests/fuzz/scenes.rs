@@ -61,6 +61,7 @@ fn parameters(u: &mut Unstructured<'_>) -> Result<Parameters> {
         restitution: *u.choose(&[0.0, 0.1, 0.5, 0.9, 1.0])?,
         friction: *u.choose(&[0.0, 0.2, 0.5, 0.9, 5.0])?,
         cone: *u.choose(FrictionCone::ALL)?,
+        rolling_friction: 0.0,
         restitution_threshold: *u.choose(&[0.0, 2.0])?,
         debonding_distance: ratio(u, [1e-4, 0.1])?,
         stiffness: *u.choose(&[0.0, 0.0, 10.0, 1e4])?,

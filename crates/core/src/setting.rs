@@ -38,6 +38,8 @@ pub enum Needs {
     Nothing,
     /// Friction.
     Friction,
+    /// Rotation of grains.
+    Rotation,
     /// Cohesion.
     Cohesion,
     /// Uniform gravity in the plane, which has a direction.

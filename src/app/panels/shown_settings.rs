@@ -21,6 +21,7 @@ pub(super) fn shown_settings(run: &WatchedRun, settings: &Settings) -> Vec<&'sta
         let has = match about.needs {
             Needs::Nothing => true,
             Needs::Friction => physics.friction,
+            Needs::Rotation => physics.rotation,
             Needs::Cohesion => physics.cohesion,
             Needs::Direction => has_direction,
         };

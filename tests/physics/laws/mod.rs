@@ -9,6 +9,7 @@ mod lost_grains;
 mod materials;
 mod moments;
 mod pyramid;
+mod rolling;
 mod slopes;
 mod touch_tolerance;
 mod turning_pairs;

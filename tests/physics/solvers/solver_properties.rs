@@ -146,6 +146,7 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         let numbers = ProblemNumbers {
             time_step_secs: parameters.time_step_secs,
             friction: parameters.friction,
+            rolling_friction: 0.0,
             capture_speed: parameters.capture_speed(world.gravity.magnitude()),
             cone: parameters.cone,
         };

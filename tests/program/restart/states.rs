@@ -84,6 +84,10 @@ fn ways(scene: &Scene) -> Vec<Settings> {
             SolverSettings { method: Method::Nsgs, friction_model, model_solves, ..way.solver };
         ways.push(way.with_only_what_is_taken());
     }
+    let mut rolling = Settings { stepper: Stepper::Moreau, ..base };
+    rolling.solver.method = Method::Nsgs;
+    rolling.parameters.rolling_friction = 0.2;
+    ways.push(rolling.with_only_what_is_taken());
     for remedy in &REMEDIES {
         let of = |&stepper: &Stepper| Settings { stepper, remedies: with(remedy), ..base };
         ways.extend(remedy.taken_by.iter().map(of));

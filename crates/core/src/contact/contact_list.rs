@@ -133,6 +133,16 @@ impl ContactList {
         &self.now.impulses
     }
 
+    /// Moment impulse that resists rolling, on grain i of a contact, N·m·s.
+    pub fn rolling(&self, index: usize) -> f64 {
+        self.now.rolling.get(index).copied().unwrap_or(0.0)
+    }
+
+    /// Moment impulses that resist rolling, one per contact or none, for the solver to fill in.
+    pub(crate) fn rolling_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.now.rolling
+    }
+
     /// Mutable impulses, one per contact, for the solver to fill in.
     pub fn impulses_mut(&mut self) -> &mut [Impulse] {
         &mut self.now.impulses
@@ -174,9 +184,10 @@ impl ContactList {
         !self.looks_ahead || self.now.bonds[index].alive
     }
 
-    /// Clears the memories and sums, because the next stepper did not write them.
+    /// Clears the memories, rolling moments and sums, because the next stepper did not write them.
     pub(crate) fn forget(&mut self) {
         self.now.memories.fill(ContactMemory::default());
+        self.now.rolling.clear();
         self.sums.clear();
     }
 
@@ -186,19 +197,22 @@ impl ContactList {
             impulse.normal *= factor;
             impulse.tangential *= factor;
         }
+        self.now.rolling.iter_mut().for_each(|impulse| *impulse *= factor);
     }
 
     /// Removes the contacts of a body, and decreases the indices above it by one.
     pub(crate) fn remove_body(&mut self, body: u32) {
-        let ContactColumns { contacts, impulses, memories, bonds, found_in } = &mut self.now;
+        let ContactColumns { contacts, impulses, memories, bonds, found_in, rolling } =
+            &mut self.now;
         let stays = |contact: &Contact| contact.grain != body && contact.other != body;
         let stay = contacts.iter().map(stays).collect::<Vec<_>>().into_iter();
-        let [mut of_impulses, mut of_memories, mut of_bonds, mut of_steps] =
-            [(); 4].map(|()| stay.clone());
+        let [mut of_impulses, mut of_memories, mut of_bonds, mut of_steps, mut of_rolling] =
+            [(); 5].map(|()| stay.clone());
         impulses.retain(|_| of_impulses.next() == Some(true));
         memories.retain(|_| of_memories.next() == Some(true));
         bonds.retain(|_| of_bonds.next() == Some(true));
         found_in.retain(|_| of_steps.next() == Some(true));
+        rolling.retain(|_| of_rolling.next() == Some(true));
         contacts.retain(stays);
         self.sums.pairs.retain(|pair| stays(&pair.contact));
         for contact in self.all_mut() {
@@ -224,13 +238,14 @@ impl ContactList {
     /// True if all lists have the same length and refer to existing bodies. There are `bodies` bodies, the first
     /// `grains` of which are grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
-        let ContactColumns { contacts, impulses, memories, bonds, found_in } = &self.now;
+        let ContactColumns { contacts, impulses, memories, bonds, found_in, rolling } = &self.now;
         let lengths = [impulses.len(), memories.len(), bonds.len(), found_in.len()];
         let is_past = |&step: &u64| step <= self.step;
         let exists = |contact: &Contact| {
             (contact.grain as usize) < grains && (contact.other as usize) < bodies
         };
         lengths == [contacts.len(); 4]
+            && (rolling.is_empty() || rolling.len() == contacts.len())
             && contacts.iter().chain(self.sums.pairs.iter().map(|pair| &pair.contact)).all(exists)
             && found_in.iter().all(is_past)
     }
@@ -352,16 +367,20 @@ struct ContactColumns {
     bonds: Vec<Bond>,
     /// The step in which each contact was first found.
     found_in: Vec<u64>,
+    /// Moment impulses on i that resist rolling, N·m·s; empty if no contact does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    rolling: Vec<f64>,
 }
 
 impl ContactColumns {
     fn clear(&mut self) {
-        let Self { contacts, impulses, memories, bonds, found_in } = self;
+        let Self { contacts, impulses, memories, bonds, found_in, rolling } = self;
         contacts.clear();
         impulses.clear();
         memories.clear();
         bonds.clear();
         found_in.clear();
+        rolling.clear();
     }
 
     /// Replaces the contents by the concatenation of `parts`.
@@ -370,7 +389,7 @@ impl ContactColumns {
             parts.for_each(|part| all.extend_from_slice(part));
         }
         self.clear();
-        let Self { contacts, impulses, memories, bonds, found_in } = self;
+        let Self { contacts, impulses, memories, bonds, found_in, rolling } = self;
         let parts = || parts.iter();
         rayon::join(
             || {
@@ -381,6 +400,7 @@ impl ContactColumns {
                 join(memories, parts().map(|part| &part.memories));
                 join(impulses, parts().map(|part| &part.impulses));
                 join(found_in, parts().map(|part| &part.found_in));
+                join(rolling, parts().map(|part| &part.rolling));
             },
         );
     }
@@ -433,6 +453,9 @@ impl ContactSearch<'_> {
                 let was_found = lives_on && (bond.alive || !looks_ahead);
                 if !keep(&contact, &mut bond) {
                     continue;
+                }
+                if !old.rolling.is_empty() {
+                    now.rolling.push(if lives_on { old.rolling[before] } else { 0.0 });
                 }
                 now.found_in.push(if was_found { old.found_in[before] } else { step });
                 now.impulses.push(impulse);

@@ -132,7 +132,8 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
         }
         // With walls driven by a force `auto` stops before the limit, so more sweeps would not help.
         let gives_up = solver.method == Method::Auto;
-        if (stalled || gives_up) && state.physics.friction && parameters.friction > 0.0 {
+        let is_taken = state.physics.friction && parameters.rolling_friction == 0.0;
+        if (stalled || gives_up) && is_taken && parameters.friction > 0.0 {
             return Advice::BoundedFriction;
         }
     }

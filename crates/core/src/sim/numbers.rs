@@ -15,7 +15,8 @@ impl Simulation {
     /// The solver of the next step: that of the settings, or the one that `auto` selects.
     pub fn picked_method(&self) -> Method {
         let Settings { solver, parameters, .. } = &self.settings;
-        let rubs = self.state.physics.friction && self.state.largest_friction(parameters) > 0.0;
+        let rubs = self.state.physics.friction
+            && (self.state.largest_friction(parameters) > 0.0 || parameters.rolling_friction > 0.0);
         picked(solver, solver.friction_model, rubs, self.is_driven())
     }
 

@@ -60,7 +60,7 @@ pub struct Observables {
     pub potential_energy: f64,
     /// Work of the normal contact forces in this step, J.
     pub normal_work: f64,
-    /// Work of the tangential contact forces in this step, J.
+    /// Work of the tangential contact forces and of the moments against rolling in this step, J.
     pub tangential_work: f64,
     /// Work of moving surfaces on grains in this step, J. It is part of the two works above; the rest of them is
     /// the work of the contacts themselves, negative if they dissipate.

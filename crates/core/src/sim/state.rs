@@ -44,7 +44,8 @@ pub(crate) struct State {
 impl State {
     /// The smallest model that computes all physics of the state.
     pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
-        ModelParts::leanest(self.physics, self.world.periodic, self.largest_friction(parameters))
+        let largest = [self.largest_friction(parameters), parameters.rolling_friction];
+        ModelParts::leanest(self.physics, self.world.periodic, largest)
     }
 
     /// The contact laws by pairs of materials; `None` if all contacts have the numbers of the parameters.

@@ -161,6 +161,7 @@ impl<'a, M: Model> Stage<'a, M> {
         let numbers = ProblemNumbers {
             time_step_secs,
             friction: largest.map_or(parameters.friction, |[friction, _]| friction),
+            rolling_friction: parameters.rolling_friction,
             capture_speed,
             cone: match largest {
                 Some(_) if capture_speed > 0.0 => parameters.cone,

@@ -210,9 +210,10 @@ impl Walls {
             Other::Feature(feature) => (self.of_feature[feature], self.shapes[feature], None),
         };
         let wall = self.moving.get(number as usize)?;
-        let [velocity, before] = match wall.spin_of_normal(round_disc) {
+        let spin = wall.spin_of_normal(round_disc);
+        let [velocity, before] = match spin {
             0.0 if wall.before.spin == 0.0 => [wall.velocity.velocity, wall.before.velocity],
-            spin => {
+            _ => {
                 let grain = contact.grain as usize;
                 let (radius, velocity) =
                     (world.grains.radii[grain], world.grains.velocities[grain]);
@@ -225,7 +226,7 @@ impl Walls {
             DrivenBy { wall: number, along: [axis.dot(contact.normal), along_tangent] }
         });
         let round = wall.surface_speed;
-        Some(Surface { velocity, before, round, is_half_space, is_pushed, driven })
+        Some(Surface { velocity, before, round, spin, is_half_space, is_pushed, driven })
     }
 
     /// The walls driven by a force, at the beginning of a step of length `time_step_secs`.

@@ -41,6 +41,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     const FRICTION: bool;
     /// True if grains turn.
     const ROTATION: bool;
+    /// True if contacts may resist rolling (`problem::rolling`).
+    const ROLLING: bool = false;
     /// True if images of grains slide relative to the grains themselves.
     const SLIDES: bool = false;
     /// m_n / m_t, the same for every contact of solid discs.
@@ -266,7 +268,11 @@ pub struct Plane;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpinningPlane;
 
-/// Two axes, friction, rotation, and images that slide. Friction may be 0.
+/// Two axes, friction, rotation, and contacts that resist rolling. Friction may be 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RollingPlane;
+
+/// Two axes, friction, rotation, and images that slide. Friction and rolling resistance may be 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShearedPlane;
 
@@ -442,8 +448,12 @@ macro_rules! plane_model {
 plane_model!(SmoothPlane, [T; 2], |normal| normal, normal, friction: false, rotation: false, own: {});
 plane_model!(Plane, [T; 2], |normal| normal, normal, friction: true, rotation: false, own: {});
 plane_model!(SpinningPlane, [T; 2], |normal| normal, normal, friction: true, rotation: true, own: {});
+plane_model!(RollingPlane, [T; 2], |normal| normal, normal, friction: true, rotation: true, own: {
+    const ROLLING: bool = true;
+});
 plane_model!(ShearedPlane, SlidingNormal<T>, |normal| SlidingNormal { normal, slide: normal[0].same(0.0) }, normal.normal, friction: true, rotation: true, own: {
     const SLIDES: bool = true;
+    const ROLLING: bool = true;
 
     #[inline(always)]
     fn relative_to_image<T: Lanes>(

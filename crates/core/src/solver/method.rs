@@ -57,6 +57,8 @@ pub struct MethodInfo {
     pub takes_shear: bool,
     /// True if it supports pairs of materials with their own contact laws.
     pub takes_pairs: bool,
+    /// True if it supports rolling friction.
+    pub takes_rolling: bool,
 }
 
 /// The order in which a method visits the contacts.
@@ -85,7 +87,7 @@ const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 /// Laws satisfied at a fixed point of the iteration that recomputes the friction bound from its own impulses.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
-/// A method that supports shear and pairs of materials, but neither models of friction nor driven walls.
+/// A method that supports shear and pairs of materials, but neither models of friction nor driven walls nor rolling friction.
 const fn known(
     method: Method,
     order: MethodOrder,
@@ -103,6 +105,7 @@ const fn known(
         takes_drives: false,
         takes_shear: true,
         takes_pairs: true,
+        takes_rolling: false,
     }
 }
 
@@ -113,6 +116,7 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
         MethodInfo {
             takes_models: true,
             takes_drives: true,
+            takes_rolling: true,
             ..known(
                 Method::Nsgs,
                 OfSettings,
@@ -130,14 +134,18 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
                 "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
             )
         },
-        known(
-            Method::Newton,
-            OfSettings,
-            COULOMB,
-            "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
-        ),
+        MethodInfo {
+            takes_rolling: true,
+            ..known(
+                Method::Newton,
+                OfSettings,
+                COULOMB,
+                "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
+            )
+        },
         MethodInfo {
             takes_drives: true,
+            takes_rolling: true,
             ..known(
                 Method::Nncg,
                 OfSettings,
@@ -182,6 +190,7 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
         MethodInfo {
             takes_models: true,
             takes_drives: true,
+            takes_rolling: true,
             ..known(
                 Method::Auto,
                 OfSettings,

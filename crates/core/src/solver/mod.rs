@@ -23,8 +23,8 @@ mod solve;
 
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{
-    Line, LineBody, Model, Plane, PlaneBody, ShearedPlane, SlidingNormal, SmoothPlane,
-    SpinningPlane,
+    Line, LineBody, Model, Plane, PlaneBody, RollingPlane, ShearedPlane, SlidingNormal,
+    SmoothPlane, SpinningPlane,
 };
 pub use method::{METHODS, Method, MethodInfo, MethodOrder, Ordering};
 pub(crate) use methods::picked;
@@ -40,9 +40,9 @@ pub use model::{ModelParts, Slot, Slots, Slotted};
 pub use onlooker::{SolveProgress, is_ended, look_on};
 pub use problem::{
     Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures,
-    MovingSurfaces, NumbersOfContact, PairRow, ProblemNumbers, Row, RowNumbers, RowVelocities,
-    StepProblem, Surface, VelocityError, for_each_row, measure, relative_velocities, residual,
-    velocity_error, worst,
+    MovingSurfaces, NumbersOfContact, PairRow, ProblemNumbers, Rolling, Row, RowNumbers,
+    RowVelocities, StepProblem, Surface, VelocityError, for_each_row, measure, relative_velocities,
+    residual, velocity_error, worst,
 };
 pub use settings::{FrictionModel, SolverChanges, SolverSettings, StopTest};
 pub use solutions::{

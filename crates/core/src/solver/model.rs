@@ -1,6 +1,8 @@
 //! Chooses the model that a step is compiled for, and keeps the problems of each model.
 
-use super::kinematics::{Line, Model, Plane, ShearedPlane, SmoothPlane, SpinningPlane};
+use super::kinematics::{
+    Line, Model, Plane, RollingPlane, ShearedPlane, SmoothPlane, SpinningPlane,
+};
 use super::methods::Memory;
 use super::problem::StepProblem;
 use crate::world::{FrictionCone, Parameters, Periodic, Physics};
@@ -16,17 +18,24 @@ pub struct ModelParts {
     pub friction: bool,
     /// True if grains turn; without friction nothing turns them.
     pub rotation: bool,
+    /// True if contacts resist rolling.
+    pub rolling: bool,
 }
 
 impl ModelParts {
     /// The leanest model that computes everything the scene has (`physics`) and the parameters switch on: without
-    /// friction if the largest μ, `friction`, is 0. It gives the same impulses as a fuller model.
-    pub(crate) fn leanest(physics: Physics, periodic: Option<Periodic>, friction: f64) -> Self {
+    /// friction if the largest μ and μ_r, `[friction, rolling]`, are 0. It gives the same impulses as a fuller model.
+    pub(crate) fn leanest(
+        physics: Physics,
+        periodic: Option<Periodic>,
+        [friction, rolling]: [f64; 2],
+    ) -> Self {
         Self {
             axes: physics.axes,
             sheared: periodic.is_some_and(Periodic::is_sheared),
             friction: physics.friction && friction > 0.0,
             rotation: physics.rotation,
+            rolling: physics.rotation && rolling > 0.0,
         }
     }
 }
@@ -39,6 +48,7 @@ macro_rules! with_model {
         $crate::with_model!(@ $parts, $M, $work,
             { sheared: true, .. } => ShearedPlane,
             { axes: 1, .. } => Line,
+            { rolling: true, .. } => RollingPlane,
             { friction: false, .. } => SmoothPlane,
             { rotation: false, .. } => Plane,
             { .. } => SpinningPlane,
@@ -77,6 +87,7 @@ pub struct Slots {
     smooth_plane: Slot<SmoothPlane>,
     plane: Slot<Plane>,
     spinning_plane: Slot<SpinningPlane>,
+    rolling_plane: Slot<RollingPlane>,
     sheared_plane: Slot<ShearedPlane>,
 }
 
@@ -95,4 +106,4 @@ macro_rules! slotted {
         })*
     };
 }
-slotted!(Line: line, SmoothPlane: smooth_plane, Plane: plane, SpinningPlane: spinning_plane, ShearedPlane: sheared_plane);
+slotted!(Line: line, SmoothPlane: smooth_plane, Plane: plane, SpinningPlane: spinning_plane, RollingPlane: rolling_plane, ShearedPlane: sheared_plane);

@@ -113,6 +113,7 @@ impl SolutionSearch {
                 let bound = if M::FRICTION { problem.law.friction_bound(shifted) } else { 0.0 };
                 [shifted, bound * random.random_range(-1.0..=1.0)]
             })
+            .chain(problem.rows.rolling.iter().map(|_| [0.0; 2]))
             .collect();
         problem.write_impulses(impulses);
     }

@@ -103,6 +103,25 @@ settings! {
             "Part of the normal force that bounds friction", {
             needs: Needs::Friction,
         }
+        /// Rolling friction μ_r: the moment M of a contact obeys |M| ≤ μ_r R N, with 1/R = 1/r_i + 1/r_j and the part of
+        /// N that bounds friction.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        rolling_friction: f64 = 0.0, "rolling-friction" ("MU_R"),
+            "Rolling friction of moreau, at least 0: the largest moment against rolling, divided by the reduced radius \
+                and by the force that bounds friction", {
+            allowed: "a finite number ≥ 0",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            needs: Needs::Rotation,
+            control: Some(Control {
+                label: "μr, rolling friction",
+                symbol: "μr",
+                hint: "Largest moment against rolling, in units of the reduced radius times the force that bounds \
+                    friction.",
+                range: [0.0, 1.0],
+                most: 1e6,
+                ..Control::PLAIN
+            }),
+        }
         /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
         ///
         /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step then has no

@@ -65,7 +65,7 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "tangential_work",
         "J",
-        "work of the tangential contact forces in the step",
+        "work of the tangential contact forces and of the moments against rolling in the step",
         Number(|row| row.tangential_work),
     ),
     column(

@@ -158,6 +158,7 @@ impl BodyForm {
             sheared: false,
             friction: self.axes == 2 && friction > 0.0,
             rotation: self.rotation,
+            rolling: false,
         })
     }
 
@@ -338,6 +339,9 @@ fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     };
     if problem.is_driven() {
         return refuse("motions.drive", "grains alone");
+    }
+    if !problem.rows.rolling.is_empty() {
+        return refuse("rolling-friction", "contacts without rolling friction");
     }
     if M::SLIDES {
         return refuse("periodic.shear_rate", "grains whose images stay");

@@ -135,6 +135,11 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
         let [now, before] =
             [motion.now[0], motion.before[0]].map(|v| v - problem.wall_speed(number));
         gain += normal * (now + before) + tangential * (motion.now[1] + motion.before[1]);
+        let [of_now, of_before] = [&problem.bodies.now, &problem.bodies.before]
+            .map(|bodies| problem.rolling(number, row, bodies));
+        if let (Some((rolling, now)), Some((_, before))) = (of_now, of_before) {
+            gain += 0.5 * row.effective_mass * rolling.impulse * (now + before);
+        }
         scale += normal.abs() * (now.abs() + before.abs());
     });
     gain > LEAST_GAIN * scale
@@ -215,6 +220,7 @@ impl<M: Model> ImpactSequence<M> {
         let mut rest = problem.clone();
         rest.bodies.free.clone_from(&self.bodies);
         rest.law.friction = 0.0;
+        rest.rows.rolling.clear();
         rest.friction.model = FrictionModel::Coulomb;
         for ((row, wall_speed), &touches) in rest.rows_with_walls().zip(&self.touching) {
             if touches {

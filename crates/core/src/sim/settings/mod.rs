@@ -16,7 +16,7 @@ use std::fmt::Display;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::setting::{About, Control, Group, Needs, Settable, Value};
 use crate::solver::{FrictionModel, METHODS, SolverSettings};
 use crate::world::{
@@ -133,6 +133,7 @@ impl Settings {
         self.solver.validate()?;
         self.check_friction_model()?;
         self.remedies.validate_each()?;
+        self.check_rolling()?;
         for remedy in &REMEDIES {
             if remedy.is_on(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
                 let takers = names_of(remedy.taken_by.iter()).join(" and ");
@@ -164,12 +165,36 @@ impl Settings {
         Ok(())
     }
 
+    /// Checks that the rest of the settings supports rolling friction, if there is any.
+    fn check_rolling(&self) -> Result<()> {
+        let SolverSettings { method, friction_model, .. } = self.solver;
+        let refuse = |field: &str, found: String, allowed: &str| {
+            let allowed = format!("{allowed} where rolling-friction is above 0");
+            Err(Error::value(field, found, allowed))
+        };
+        if self.parameters.rolling_friction == 0.0 {
+            return Ok(());
+        }
+        if !method.info().takes_rolling {
+            let takers = METHODS.iter().filter(|info| info.takes_rolling).map(|info| info.name);
+            let takers: Vec<_> = takers.collect();
+            return refuse("solver", method.to_string(), &takers.join(" or "));
+        }
+        if friction_model != FrictionModel::Coulomb {
+            return refuse("friction-model", friction_model.to_string(), "coulomb");
+        }
+        Ok(())
+    }
+
     /// Checks that the settings support everything in a world.
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
         self.check_shear(world.periodic)?;
         self.check_pairs(&world.pairs)?;
+        let rolling = self.parameters.rolling_friction;
+        let allowed = "0 where physics.rotation is false";
+        check(rolling == 0.0 || physics.rotation, "rolling-friction", rolling, allowed)?;
         (self.stepper.info().check_in)(world, physics, &self.parameters)
     }
 

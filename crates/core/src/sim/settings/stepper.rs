@@ -1,6 +1,6 @@
 //! The registry of steppers: a word of [`Stepper`] and a [`StepperInfo`] for each. `sim::steppers` contains the code.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::setting::words;
 use crate::sim::settings::fracture_work::{FractureWork, fracture_work_of};
 use crate::sim::settings::spring_dashpot::{
@@ -99,11 +99,17 @@ impl Stepper {
     }
 }
 
+/// Refuses rolling friction, for steppers that do not compute it.
+fn without_rolling(parameters: &Parameters) -> Result<()> {
+    let found = parameters.rolling_friction;
+    check(found == 0.0, "rolling-friction", found, "0 where stepper is not moreau")
+}
+
 const MOREAU: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with cohesion and Coulomb's law",
     source: "A. Abramian, L. Staron, Time Steps v.s. Cohesion (2020); J. J. Moreau (1988)",
-    settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold touch-tolerance solver ordering \
-        stop tolerance max-sweeps warm-start friction-model model-solves",
+    settings: "bond bond-acceleration dt tilt rho mu cone rolling-friction restitution-threshold touch-tolerance solver \
+        ordering stop tolerance max-sweeps warm-start friction-model model-solves",
     takes_drives: true,
     takes_pairs: true,
     ..StepperInfo::WHOLE
@@ -117,7 +123,7 @@ const RANGE: StepperInfo = StepperInfo {
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
     check: |parameters| match parameters.cone {
-        FrictionCone::Shifted => Ok(()),
+        FrictionCone::Shifted => without_rolling(parameters),
         cone => Err(Error::value("cone", cone, "shifted where stepper is range")),
     },
     takes_drives: true,
@@ -133,6 +139,7 @@ const TGS_SOFT: StepperInfo = StepperInfo {
     source: "E. Catto, Solver2D (2024)",
     settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold warm-start substeps",
     takes_drives: true,
+    check: without_rolling,
     // More substeps give stiffer and more accurate contacts, and cost more.
     substeps: |_, _, parameters| match parameters.substeps {
         0 => 4,
@@ -145,6 +152,7 @@ const AVBD: StepperInfo = StepperInfo {
     solves: "the step's problem by penalties and multipliers, as far as its iterations get",
     source: "C. Giles, E. Diaz and C. Yuksel (2025)",
     settings: "bond bond-acceleration dt tilt mu cone warm-start substeps",
+    check: without_rolling,
     substeps: |_, _, parameters| parameters.substeps.max(1),
     ..StepperInfo::WHOLE
 };
@@ -155,6 +163,7 @@ const DEM: StepperInfo = StepperInfo {
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
     settings: "bond bond-acceleration dt tilt rho mu cone stiffness damping-ratio substeps",
     takes_drives: true,
+    check: without_rolling,
     check_in: check_substeps,
     substeps,
     critical_time_step_secs: |world, physics, parameters| {

@@ -48,8 +48,8 @@ const SWEEPS_AFTER: u32 = 400;
 /// cohesive grains under shear.
 const SWEEPS_OF_DRIVEN: u32 = 1_000;
 
-/// The method that solves a problem under this model of friction, with friction (`rubs`) or without, and with or
-/// without driven walls: the method of the settings, or the choice of `auto`.
+/// The method that solves a problem under this model of friction, with friction or rolling friction (`rubs`) or
+/// without, and with or without driven walls: the method of the settings, or the choice of `auto`.
 pub(crate) fn picked(
     settings: &SolverSettings,
     model: FrictionModel,
@@ -72,7 +72,7 @@ pub(super) fn solve<M: Model>(
     memory: &mut Memory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let rubs = M::FRICTION && problem.law.friction > 0.0;
+    let rubs = M::FRICTION && (problem.law.friction > 0.0 || !problem.rows.rolling.is_empty());
     let method = picked(settings, problem.friction.model, rubs, problem.is_driven());
     let within =
         |sweeps: u32| SolverSettings { max_sweeps: settings.max_sweeps.min(sweeps), ..*settings };

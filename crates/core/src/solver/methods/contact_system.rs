@@ -21,7 +21,8 @@ use crate::solver::problem::{ContactRows, Row, StepProblem, is_solved, residual}
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
-/// Scaled impulses or velocities of all contacts: (normal, tangential) each, √J.
+/// Scaled impulses or velocities of all contacts: (normal, tangential) each, √J. Impulses of contacts that resist
+/// rolling are followed by (√m_n ψ, 0) of each (`problem::rolling`).
 pub type ScaledVector = Vec<[f64; 2]>;
 
 /// Work memory of a method. The memory is kept between steps, its contents are not.
@@ -127,15 +128,23 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             self.rows()
                 .map(|(row, root)| [root * row.shifted_impulse, root * row.tangential_impulse]),
         );
+        let rolling = self.problem.rows.rolling.iter().zip(&self.problem.root_masses);
+        impulses.extend(rolling.map(|(rolling, root)| [root * rolling.impulse, 0.0]));
     }
 
     fn write(&mut self, impulses: &[[f64; 2]]) {
         let StepProblem { rows, root_masses, .. } = &mut *self.problem;
-        for ((row, root), [normal, tangential]) in rows.iter_mut().zip(root_masses).zip(impulses) {
+        let of_rows = rows.iter_mut().zip(&*root_masses).zip(impulses);
+        for ((row, root), [normal, tangential]) in of_rows {
             row.shifted_impulse = normal / *root;
             if M::FRICTION {
                 row.tangential_impulse = tangential / *root;
             }
+        }
+        let further = impulses.get(root_masses.len()..).unwrap_or_default();
+        for ((rolling, root), [impulse, _]) in rows.rolling.iter_mut().zip(root_masses).zip(further)
+        {
+            rolling.impulse = impulse / *root;
         }
         self.problem.form_velocities();
     }

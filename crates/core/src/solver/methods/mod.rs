@@ -8,6 +8,7 @@ mod interior_point;
 mod jacobi;
 mod model_solves;
 mod newton;
+mod newton_terms;
 mod nncg;
 mod nonlinear_elimination;
 mod nsgs;

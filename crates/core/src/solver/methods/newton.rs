@@ -13,7 +13,8 @@
 //!
 //! one sparse system with a D × D block per body: masses plus contact stiffnesses m_ij/ε. A slipping contact,
 //! λ_t' = ±μσ', adds the unsymmetric n + (±μ) t. The exact solution is a fixed point for any ε: a small ε converges in
-//! few steps, a larger ε is more robust if guesses keep changing. After each step
+//! few steps, a larger ε is more robust if guesses keep changing. A rolling moment (`problem::rolling`) is one more
+//! clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own guess. After each step
 //!
 //! 1. the impulses are projected on the law, and the velocities are formed from them;
 //! 2. a few Gauss–Seidel sweeps correct wrong guesses;
@@ -28,16 +29,16 @@
 //! in a trust region.
 
 use super::contact_system::{BodySystem, WorkVectors};
+use super::newton_terms::{Guess, RollingTerms, Terms, guess, guess_rolling};
 use super::nncg;
 use super::nonlinear_elimination::NonlinearElimination;
 use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;
-use crate::contact::ContactLaw;
 use crate::contact::law::{coulomb, signorini};
 use crate::solver::kinematics::Model;
 use crate::solver::linear::{BlockMatrix, ContactGraph};
 use crate::solver::onlooker::{SolveProgress, is_ended};
-use crate::solver::problem::{Row, StepProblem, residual};
+use crate::solver::problem::{StepProblem, residual};
 use crate::solver::settings::SolverSettings;
 
 /// Compliance of the first step.
@@ -98,20 +99,13 @@ struct NewtonWorkspace<const D: usize> {
     matrix: BlockMatrix<D>,
     vector: Vec<[f64; D]>,
     guesses: Vec<Guess>,
+    /// Guesses of the rolling moments of the rows; empty without rolling friction.
+    rolling_guesses: Vec<Guess>,
     alone: NonlinearElimination,
     /// (σ, λ_t) of the rows at the last accepted state.
     saved: Vec<[f64; 2]>,
     /// (σ, λ_t) of the smallest residual so far.
     best: Vec<[f64; 2]>,
-}
-
-/// Guess of a contact's state, made from the present impulses and velocities.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Guess {
-    Open,
-    Stick,
-    /// The tangential impulse is at its bound, with this sign; 0 if the bound itself is 0.
-    Slip(f64),
 }
 
 pub(super) fn solve<M: Model>(
@@ -229,7 +223,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
 
     /// Sets the impulses to the regularised law at the new velocities, projected on the law.
     fn take_impulses(&mut self, compliance: f64) {
-        let NewtonWorkspace { graph, vector, guesses, .. } = &*self.workspace;
+        let NewtonWorkspace { graph, vector, guesses, rolling_guesses, .. } = &*self.workspace;
         let places = &graph.elimination.place_of;
         let StepProblem { bodies, rows, law, .. } = &mut *self.problem;
         let along = |gradient: &[f64; 3], body: u32| -> f64 {
@@ -244,6 +238,14 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 false => rows.fixed[number].velocity(&bodies.now),
             };
             let law = rows.law(number, law);
+            let row = rows.get(number);
+            let rolling_velocity = if M::ROLLING { rows.rolling.get(number) } else { None };
+            let rolling_velocity = rolling_velocity.map(|rolling| {
+                let j = is_pair.then(|| &bodies.now[row.j as usize]);
+                let of_i = along(&rolling.gradient(false), row.i);
+                let of_j = j.map_or(0.0, |_| along(&rolling.gradient(true), row.j));
+                rolling.velocity::<M>(&bodies.now[row.i as usize], j) + of_i + of_j
+            });
             let row = rows.get_mut(number);
             let [[normal_i, tangent_i], [normal_j, tangent_j]] = M::gradients(row.normal);
             normal_velocity += along(&normal_i, row.i);
@@ -269,6 +271,18 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                     Guess::Slip(sign) => sign * bound,
                 };
             }
+            if let Some(velocity) = rolling_velocity {
+                let rolling = &mut rows.rolling[number];
+                let bound = rolling.bound(&law, shifted);
+                rolling.impulse = match rolling_guesses[number] {
+                    Guess::Open => 0.0,
+                    Guess::Stick => {
+                        let softness = rolling.compliance * compliance;
+                        coulomb(rolling.impulse - velocity / softness, bound)
+                    }
+                    Guess::Slip(sign) => sign * bound,
+                };
+            }
         }
     }
 }
@@ -279,136 +293,57 @@ fn assemble<M: Model, const D: usize>(
     workspace: &mut NewtonWorkspace<D>,
     compliance: f64,
 ) {
-    let NewtonWorkspace { graph, matrix, vector, guesses, .. } = workspace;
+    let NewtonWorkspace { graph, matrix, vector, guesses, rolling_guesses, .. } = workspace;
     let (elimination, pair_blocks) = (&graph.elimination, &graph.pair_blocks);
     matrix.start::<M>(elimination, &problem.bodies.masses);
     vector.clear();
     vector.resize(problem.bodies.now.len(), [0.0; D]);
     guesses.clear();
+    rolling_guesses.clear();
     for (number, row) in problem.rows.fixed.iter().enumerate() {
         let velocity = row.velocity(&problem.bodies.now);
         let law = problem.law_of(number);
         let guess = guess::<M>(&law, row, velocity);
         guesses.push(guess);
         let gradients = M::gradients(row.normal);
-        let terms = Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients[0]);
+        let mut terms = Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients[0]);
+        if let Some((rolling, speed)) = problem.rolling(number, row, &problem.bodies.now) {
+            let guess = guess_rolling(&law, row, velocity[0], rolling, speed);
+            rolling_guesses.push(guess);
+            let added = RollingTerms { rolling, speed, guess, compliance };
+            terms.add_rolling(&law, row, velocity[0], &added, false);
+        }
         let place = elimination.place_of[row.i as usize];
-        terms.add(matrix.diagonal_mut(place), &terms);
+        terms.add::<M>(matrix.diagonal_mut(place), &terms);
         terms.add_load(&mut vector[place as usize]);
     }
-    for (row, &block) in problem.rows.pairs.iter().zip(pair_blocks) {
+    let pairs = problem.rows.pairs.iter().zip(pair_blocks);
+    for (number, (row, &block)) in (problem.rows.fixed.len()..).zip(pairs) {
         let velocity = row.velocity(&problem.bodies.now);
-        let law = problem.law_of(guesses.len());
+        let law = problem.law_of(number);
         let guess = guess::<M>(&law, row, velocity);
         guesses.push(guess);
         let gradients = M::gradients(row.normal);
-        let on_i = Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients[0]);
-        let on_j = Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients[1]);
+        let [mut on_i, mut on_j] = gradients.map(|gradients| {
+            Terms::<D>::new::<M>(&law, row, velocity, guess, compliance, &gradients)
+        });
+        if let Some((rolling, speed)) = problem.rolling(number, row, &problem.bodies.now) {
+            let guess = guess_rolling(&law, row, velocity[0], rolling, speed);
+            rolling_guesses.push(guess);
+            let added = RollingTerms { rolling, speed, guess, compliance };
+            on_i.add_rolling(&law, row, velocity[0], &added, false);
+            on_j.add_rolling(&law, row, velocity[0], &added, true);
+        }
         let i = elimination.place_of[row.i as usize];
         let j = elimination.place_of[row.j as usize];
         on_i.add_load(&mut vector[i as usize]);
         on_j.add_load(&mut vector[j as usize]);
         if guess != Guess::Open {
-            on_i.add(matrix.diagonal_mut(i), &on_i);
-            on_j.add(matrix.diagonal_mut(j), &on_j);
+            on_i.add::<M>(matrix.diagonal_mut(i), &on_i);
+            on_j.add::<M>(matrix.diagonal_mut(j), &on_j);
             let (i_to_j, j_to_i) = matrix.off_diagonal_mut(block, i < j);
-            on_i.add(i_to_j, &on_j);
-            on_j.add(j_to_i, &on_i);
-        }
-    }
-}
-
-/// The next state of a contact according to its law.
-fn guess<M: Model>(
-    law: &ContactLaw,
-    row: &Row<M>,
-    [normal_velocity, tangential_velocity]: [f64; 2],
-) -> Guess {
-    let shifted = row.shifted_impulse - normal_velocity - row.restitution_velocity;
-    if shifted <= 0.0 {
-        return Guess::Open;
-    }
-    let bound = if M::FRICTION { law.friction_bound(shifted) } else { 0.0 };
-    if bound == 0.0 {
-        return Guess::Slip(0.0);
-    }
-    let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
-    let tangential = row.tangential_impulse - compliance * tangential_velocity;
-    if tangential.abs() <= bound { Guess::Stick } else { Guess::Slip(tangential.signum()) }
-}
-
-/// Contribution of a contact to the equations of one of its bodies.
-struct Terms<const D: usize> {
-    /// Gradients of v_n and v_t with respect to the body's velocity.
-    normal: [f64; D],
-    tangent: [f64; D],
-    /// Direction of the impulse that responds to v_n: n, or n ± μt in slip.
-    answer: [f64; D],
-    /// Stiffnesses of the response to v_n and v_t, kg.
-    normal_stiffness: f64,
-    tangential_stiffness: f64,
-    /// Change of the impulse at the present velocities, kg·m/s.
-    load: [f64; D],
-}
-
-impl<const D: usize> Terms<D> {
-    #[inline(always)]
-    fn new<M: Model>(
-        law: &ContactLaw,
-        row: &Row<M>,
-        [normal_velocity, tangential_velocity]: [f64; 2],
-        guess: Guess,
-        compliance: f64,
-        gradients: &[[f64; 3]; 2],
-    ) -> Self {
-        let part = |vector: &[f64; 3]| std::array::from_fn::<f64, D, _>(|axis| vector[axis]);
-        let (normal, tangent) = (part(&gradients[0]), part(&gradients[1]));
-        let mass = row.effective_mass;
-        let stiffness = mass / compliance;
-        let (shifted, tangential) = (row.shifted_impulse, row.tangential_impulse);
-        let normal_change = -(normal_velocity + row.restitution_velocity) / compliance;
-        let (slope, normal_stiffness, tangential_stiffness, changes) = match guess {
-            Guess::Open => (0.0, 0.0, 0.0, [-shifted, -tangential]),
-            Guess::Stick => {
-                let softness = M::TANGENTIAL_COMPLIANCE;
-                let tangential_change = -tangential_velocity / (softness * compliance);
-                (0.0, stiffness, stiffness / softness, [normal_change, tangential_change])
-            }
-            Guess::Slip(sign) => {
-                let slope = sign * law.friction;
-                let rubbing = law.rubbing(shifted + normal_change);
-                (slope, stiffness, 0.0, [normal_change, slope * rubbing - tangential])
-            }
-        };
-        let [normal_load, tangential_load] = changes.map(|change| mass * change);
-        Self {
-            normal,
-            tangent,
-            answer: std::array::from_fn(|axis| normal[axis] + slope * tangent[axis]),
-            normal_stiffness,
-            tangential_stiffness,
-            load: std::array::from_fn(|axis| {
-                normal_load * normal[axis] + tangential_load * tangent[axis]
-            }),
-        }
-    }
-
-    /// Adds to `block` the stiffness that couples this body's equations to the velocity of `other`.
-    #[inline(always)]
-    fn add(&self, block: &mut [[f64; D]; D], other: &Self) {
-        for (row, entries) in block.iter_mut().enumerate() {
-            let normal = self.normal_stiffness * self.answer[row];
-            let tangential = self.tangential_stiffness * self.tangent[row];
-            for (column, entry) in entries.iter_mut().enumerate() {
-                *entry += normal * other.normal[column] + tangential * other.tangent[column];
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn add_load(&self, vector: &mut [f64; D]) {
-        for (entry, load) in vector.iter_mut().zip(self.load) {
-            *entry += load;
+            on_i.add::<M>(i_to_j, &on_j);
+            on_j.add::<M>(j_to_i, &on_i);
         }
     }
 }

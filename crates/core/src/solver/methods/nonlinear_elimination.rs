@@ -44,21 +44,34 @@ impl NonlinearElimination {
         problem.rows.read_impulses(&mut self.saved);
         self.choose(problem);
         let StepProblem { bodies, rows, law, .. } = problem;
-        let ContactRows { fixed, pairs, frictions, captures, .. } = rows;
+        let ContactRows { fixed, pairs, frictions, captures, rolling, .. } = rows;
         let first_pair = fixed.len();
+        let law_of = |number| law_of_row([frictions, captures], number, law);
         let project = |number: usize| {
-            let law = law_of_row([frictions, captures], number, law);
+            let law = law_of(number);
             move |trial| CoulombFriction::<false>::project::<M>(&law, 0.0, trial)
         };
         let mut change = ImpulseChange::default();
         for _ in 0..SWEEPS {
             for &number in &self.fixed {
-                let project = project(number);
-                fixed[number].solve::<false>(&mut bodies.now, &mut change, project);
+                let row = &mut fixed[number];
+                row.solve::<false>(&mut bodies.now, &mut change, project(number));
+                if M::ROLLING
+                    && let Some(rolling) = rolling.get_mut(number)
+                {
+                    let law = law_of(number);
+                    row.solve_rolling::<false>(rolling, None, &law, &mut bodies.now, &mut change);
+                }
             }
             for &number in &self.pairs {
-                let project = project(first_pair + number);
-                pairs[number].solve::<false>(&mut bodies.now, &mut change, project);
+                let (row, number) = (&mut pairs[number], first_pair + number);
+                row.solve::<false>(&mut bodies.now, &mut change, project(number));
+                if M::ROLLING
+                    && let Some(rolling) = rolling.get_mut(number)
+                {
+                    let (share, law) = (Some(row.share), law_of(number));
+                    row.solve_rolling::<false>(rolling, share, &law, &mut bodies.now, &mut change);
+                }
             }
         }
         // NaN compares false, so it counts as no progress.
@@ -82,6 +95,12 @@ impl NonlinearElimination {
             let mass = row.effective_mass;
             squares.push(mass * mass * (normal * normal + tangential * tangential));
         });
+        for (number, row) in problem.rows() {
+            if let Some((rolling, velocity)) = problem.rolling(number, row, &problem.bodies.now) {
+                let error = rolling.error(&problem.law_of(number), row.shifted_impulse, velocity);
+                squares[number] += (row.effective_mass * error).powi(2);
+            }
+        }
         by_square.clear();
         by_square.extend(0..squares.len());
         by_square.sort_unstable_by(|&one, &other| squares[other].total_cmp(&squares[one]));

@@ -5,7 +5,7 @@ use super::sweep::ImpulseChange;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{
     Bodies, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow, FrictionProjection,
-    StepProblem, law_of_row, projection_residual, squared_impulses, velocity_error,
+    PairRow, StepProblem, law_of_row, projection_residual, squared_impulses, velocity_error,
     with_projection,
 };
 use crate::solver::settings::{FrictionModel, SolverSettings};
@@ -112,13 +112,17 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     let law = problem.law;
     let lagged = &problem.friction.now;
     let Bodies { now: bodies, .. } = &mut problem.bodies;
-    let ContactRows { fixed, pairs, frictions, captures, .. } = &mut problem.rows;
+    let ContactRows { fixed, pairs, frictions, captures, rolling, .. } = &mut problem.rows;
     let own_numbers = [&**frictions, captures];
     let walls = &mut problem.walls;
     let first_pair = fixed.len();
+    // The list is empty without rolling friction.
+    let fixed_count = first_pair.min(rolling.len());
+    let (rolling_fixed, rolling_pairs) = rolling.split_at_mut(fixed_count);
+    let law_of = |number| if P::TAKES_PAIRS { law_of_row(own_numbers, number, &law) } else { law };
     let project = |number: usize| {
         let lagged = if P::LAGS { lagged[number] } else { 0.0 };
-        let law = if P::TAKES_PAIRS { law_of_row(own_numbers, number, &law) } else { law };
+        let law = law_of(number);
         move |trial| P::project::<M>(&law, lagged, trial)
     };
     let mut change = ImpulseChange::default();
@@ -132,10 +136,24 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
             } else {
                 row.solve::<MEASURE>(bodies, change, project(number));
             }
+            if M::ROLLING
+                && let Some(rolling) = rolling_fixed.get_mut(number)
+            {
+                row.solve_rolling::<MEASURE>(rolling, None, &law_of(number), bodies, change);
+            }
         };
+    let mut solve_pair = |number: usize, row: &mut PairRow<M>, bodies: &mut [_], change: &mut _| {
+        row.solve::<MEASURE>(bodies, change, project(first_pair + number));
+        if M::ROLLING
+            && let Some(rolling) = rolling_pairs.get_mut(number)
+        {
+            let law = law_of(first_pair + number);
+            row.solve_rolling::<MEASURE>(rolling, Some(row.share), &law, bodies, change);
+        }
+    };
     if backward {
         for (number, row) in pairs.iter_mut().enumerate().rev() {
-            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            solve_pair(number, row, bodies, &mut change);
         }
         for (number, row) in fixed.iter_mut().enumerate().rev() {
             solve_fixed(number, row, bodies, &mut change);
@@ -145,7 +163,7 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
             solve_fixed(number, row, bodies, &mut change);
         }
         for (number, row) in pairs.iter_mut().enumerate() {
-            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            solve_pair(number, row, bodies, &mut change);
         }
     }
     if DRIVEN {

@@ -7,9 +7,9 @@
 //! The normal impulse does not change v_t, so both velocities are read once. Other models of friction use another
 //! projection of the same trial impulses (`problem::friction`).
 
-use crate::contact::Lanes;
+use crate::contact::{ContactLaw, Lanes};
 use crate::solver::kinematics::Model;
-use crate::solver::problem::{FixedRow, PairRow, Row};
+use crate::solver::problem::{FixedRow, PairRow, Rolling, Row};
 
 /// The data of a row that an update needs, except the impulses; with several lanes, one row per lane. Units as in
 /// [`Row`].
@@ -156,6 +156,28 @@ impl<M: Model> PairRow<M> {
 }
 
 impl<M: Model> Row<M> {
+    /// Solves the rolling resistance of the contact after its (σ, λ_t); `share` is g_i, or `None` against a fixed body.
+    #[inline(always)]
+    pub(crate) fn solve_rolling<const MEASURE: bool>(
+        &self,
+        rolling: &mut Rolling,
+        share: Option<f64>,
+        law: &ContactLaw,
+        bodies: &mut [M::Body<f64>],
+        change: &mut ImpulseChange,
+    ) {
+        let (i, j) = (self.i as usize, self.j as usize);
+        let velocity = rolling.velocity::<M>(&bodies[i], share.map(|_| &bodies[j]));
+        let solved = rolling.solved(law, self.shifted_impulse, velocity);
+        let added = solved - rolling.impulse;
+        rolling.impulse = solved;
+        rolling.turn_i::<M>(&mut bodies[i], share.unwrap_or(1.0), added);
+        if let Some(share) = share {
+            rolling.turn_j::<M>(&mut bodies[j], share, added);
+        }
+        change.add::<M, MEASURE>(self.effective_mass, [0.0, added]);
+    }
+
     #[inline(always)]
     fn local(&self) -> Local<M, f64> {
         let Self { normal, restitution_velocity, effective_mass, .. } = *self;

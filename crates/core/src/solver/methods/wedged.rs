@@ -49,5 +49,6 @@ pub(super) fn start_cold<M: Model>(problem: &mut StepProblem<M>) {
         let row = problem.rows.get_mut(number);
         (row.shifted_impulse, row.tangential_impulse) = (capture_speed, 0.0);
     }
+    problem.rows.rolling.iter_mut().for_each(|rolling| rolling.impulse = 0.0);
     problem.form_velocities();
 }

@@ -25,7 +25,7 @@ pub struct Measures {
     pub tensile_contacts: u32,
     /// Work of the normal impulses, J.
     pub normal_work: f64,
-    /// Work of the tangential impulses, J.
+    /// Work of the tangential impulses and of the moments against rolling, J.
     pub tangential_work: f64,
     /// The part of both works that is done by moving surfaces, J.
     pub wall_work: f64,
@@ -110,6 +110,11 @@ pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
         measures.normal_work += half_mass * normal * (motion.now[0] + motion.before[0]);
         if M::FRICTION {
             measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
+        }
+        if let Some((rolling, now)) = problem.rolling(number, row, &problem.bodies.now) {
+            let before = problem.rolling(number, row, &problem.bodies.before);
+            let sum = now + before.map_or(0.0, |(_, velocity)| velocity);
+            measures.tangential_work += half_mass * rolling.impulse * sum;
         }
         if M::SLIDES {
             let [along_normal, along_tangent] = M::slide_along(row.normal);

@@ -7,6 +7,7 @@ mod friction;
 mod measures;
 mod order;
 mod residual;
+mod rolling;
 mod row_velocities;
 mod rows;
 mod solved;
@@ -25,6 +26,7 @@ pub use self::residual::residual;
 pub(crate) use self::residual::{
     errors, natural_map, projection_residual, residual_of, squared_impulse, squared_residual_scale,
 };
+pub use self::rolling::Rolling;
 pub use self::row_velocities::{RowVelocities, for_each_row, relative_velocities};
 pub(crate) use self::rows::law_of_row;
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
@@ -78,6 +80,8 @@ pub struct ProblemNumbers {
     pub time_step_secs: f64,
     /// μ; with [`RowNumbers`], the largest of all pairs.
     pub friction: f64,
+    /// μ_r.
+    pub rolling_friction: f64,
     /// C₀Δt/m_ij, m/s; 0 without cohesion. With [`RowNumbers`], the largest of all pairs for grains of the mean mass.
     pub capture_speed: f64,
     /// The part of the normal force that friction acts on; the shifted cone if there is no cohesion.
@@ -127,7 +131,8 @@ impl<M: Model> StepProblem<M> {
         surfaces: Option<MovingSurfaces<'_>>,
         numbers_of: Option<NumbersOfContact<'_>>,
     ) {
-        let ProblemNumbers { time_step_secs, friction, capture_speed, cone } = numbers;
+        let ProblemNumbers { time_step_secs, friction, rolling_friction, capture_speed, cone } =
+            numbers;
         self.law = ContactLaw::new(friction, capture_speed, cone);
         // Without gravity, cohesion alone sets a scale of speeds; without both there is no scale for velocity errors.
         let acceleration = match world.gravity.magnitude() {
@@ -149,9 +154,11 @@ impl<M: Model> StepProblem<M> {
             self.rows.captures.extend(self.rows.contacts.iter().map(capture));
         }
         self.fill_rows(world, contacts, fixed, settings.warm_start, &rebound);
+        self.fill_rolling(world, contacts, rolling_friction, settings.warm_start);
         self.find_what_touches();
         self.find_extent(world);
         if let Some(surfaces) = surfaces {
+            self.turn_surfaces(contacts.contacts(), &surfaces);
             self.add_surfaces(contacts, &rebound, surfaces);
         }
         self.form_velocities();
@@ -329,6 +336,13 @@ impl<M: Model> StepProblem<M> {
             now[row.i as usize] = i;
             now[row.j as usize] = j;
         }
+        for (number, rolling) in self.rows.rolling.iter().enumerate() {
+            let (row, share) = (self.rows.get(number), self.rows.share(number));
+            rolling.turn_i::<M>(&mut now[row.i as usize], share, rolling.impulse);
+            if self.rows.is_pair(number) {
+                rolling.turn_j::<M>(&mut now[row.j as usize], share, rolling.impulse);
+            }
+        }
         if self.is_driven() {
             self.form_wall_velocities();
         }
@@ -401,6 +415,7 @@ impl<M: Model> StepProblem<M> {
 
     /// Writes the rows' impulses back to the contacts, in N·s.
     pub(crate) fn store_impulses(&self, contacts: &mut ContactList) {
+        self.store_rolling(contacts);
         let impulses = contacts.impulses_mut();
         for ((number, row), &index) in self.rows().zip(&self.rows.contacts) {
             let [normal, tangential] = self.reduced_impulse(number, row);
@@ -421,10 +436,15 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the rows' impulses (σ, λ_t), m/s, and forms the velocities that they make.
+    /// Sets the rows' impulses, m/s, in the order of [`ContactRows::read_impulses`], and forms the velocities that they
+    /// make.
     pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
-        for (row, impulse) in self.rows.iter_mut().zip(impulses) {
+        let mut impulses = impulses.into_iter();
+        for (row, impulse) in self.rows.iter_mut().zip(&mut impulses) {
             [row.shifted_impulse, row.tangential_impulse] = impulse;
+        }
+        for (rolling, [impulse, _]) in self.rows.rolling.iter_mut().zip(impulses) {
+            rolling.impulse = impulse;
         }
         self.form_velocities();
     }

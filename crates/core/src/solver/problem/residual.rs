@@ -16,7 +16,8 @@ use crate::solver::settings::FrictionModel;
 ///
 /// with v^free the relative velocity without any contact impulse, including the restitution term. If nothing would move
 /// without contacts, the residual is 0 if the error is only rounding, and infinite otherwise. Rows store p/m_n and
-/// P_t/m_n, so each row's terms are formed in m/s and weighted by m_n.
+/// P_t/m_n, so each row's terms are formed in m/s and weighted by m_n. Moments against rolling add theirs
+/// (`problem::rolling`).
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
@@ -126,6 +127,15 @@ impl Sums {
         let law = problem.law_of(number);
         let errors = errors::<M, f64>(&law, row.impulse(), row.restitution_velocity, now);
         self.add::<M>(row, errors, motion);
+        let squared_mass = row.effective_mass * row.effective_mass;
+        if let Some((rolling, velocity)) = problem.rolling(number, row, &problem.bodies.now) {
+            let error = rolling.error(&problem.law_of(number), row.shifted_impulse, velocity);
+            self.error += squared_mass * error * error;
+        }
+        if let Some((rolling, velocity)) = problem.rolling(number, row, &problem.bodies.free) {
+            let free = velocity / rolling.compliance;
+            self.scale += squared_mass * free * free;
+        }
     }
 
     /// Adds the errors (e_n, e_t) of a row, m/s.
@@ -173,7 +183,14 @@ pub(super) const ROUNDING: f64 = 1e-14;
 /// The error that counts as rounding, N·s.
 pub(super) fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
     let squared = |row: &Row<M>| squared_impulse(row.effective_mass, row.impulse());
-    ROUNDING * problem.rows.iter().map(squared).sum::<f64>().sqrt()
+    let squares = problem.rows.iter().map(squared).sum::<f64>();
+    ROUNDING * (squares + squared_rolling(problem)).sqrt()
+}
+
+/// Σ (MΔt/R)² of the rolling moments, (N·s)².
+pub(super) fn squared_rolling<M: Model>(problem: &StepProblem<M>) -> f64 {
+    let rolling = problem.rows.iter().zip(&problem.rows.rolling);
+    rolling.map(|(row, rolling)| (row.effective_mass * rolling.impulse).powi(2)).sum()
 }
 
 /// P² of an impulse (λ_n, λ_t) with effective mass `mass`, (N·s)².

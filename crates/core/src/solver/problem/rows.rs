@@ -2,6 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
+use super::rolling::Rolling;
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 
@@ -139,6 +140,8 @@ pub struct ContactRows<M: Model> {
     pub frictions: Vec<f64>,
     /// ρ of each row if pairs of materials have their own numbers; else empty.
     pub restitutions: Vec<f64>,
+    /// The rolling resistance of each row; empty without rolling friction.
+    pub rolling: Vec<Rolling>,
 }
 
 impl<M: Model> ContactRows<M> {
@@ -160,6 +163,7 @@ impl<M: Model> ContactRows<M> {
         self.captures.clear();
         self.frictions.clear();
         self.restitutions.clear();
+        self.rolling.clear();
     }
 
     /// The rows in the order of their numbers.
@@ -241,10 +245,11 @@ impl<M: Model> ContactRows<M> {
         self.contacts.push(number as u32);
     }
 
-    /// Copies (σ, λ_t) of all rows, m/s. Clears `impulses` first.
+    /// Copies (σ, λ_t) of all rows, m/s, then (ψ, 0) of those that resist rolling. Clears `impulses` first.
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));
+        impulses.extend(self.rolling.iter().map(|rolling| [rolling.impulse, 0.0]));
     }
 }
 

@@ -1,6 +1,6 @@
 //! The only place that decides whether a step is solved.
 
-use super::residual::{natural_map_sums, rounding, squared_impulse};
+use super::residual::{natural_map_sums, rounding, squared_impulse, squared_rolling};
 use super::{StepProblem, velocity_error};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::{SolverSettings, StopTest};
@@ -38,12 +38,14 @@ pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSet
 /// impulses would pass that have stopped changing far from a solution.
 const LEFT_OF_CHANGE: f64 = 8.0;
 
-/// Σ P², (N·s)².
+/// Σ P², (N·s)², and Σ (MΔt/R)² of rolling moments.
 pub(crate) fn squared_impulses<M: Model>(problem: &StepProblem<M>) -> f64 {
     let squared = |number: usize| {
         let row = problem.rows.get(number);
         squared_impulse(row.effective_mass, problem.reduced_impulse(number, row))
     };
     let fixed = problem.rows.fixed.len();
-    (0..fixed).map(squared).sum::<f64>() + (fixed..problem.rows.len()).map(squared).sum::<f64>()
+    let squares = (0..fixed).map(squared).sum::<f64>()
+        + (fixed..problem.rows.len()).map(squared).sum::<f64>();
+    squares + squared_rolling(problem)
 }

@@ -120,6 +120,9 @@ impl ErrorSums {
         if M::FRICTION {
             squared += motion.free[1] * motion.free[1] / M::TANGENTIAL_COMPLIANCE;
         }
+        if let Some((rolling, free)) = problem.rolling(number, row, &problem.bodies.free) {
+            squared += free * free / rolling.compliance;
+        }
         self.undone += row.effective_mass * squared;
         let model = problem.friction.model;
         if !M::FRICTION || model == FrictionModel::Coulomb {
@@ -160,6 +163,13 @@ impl ErrorSums {
             let outside = (tangential - allowed).abs();
             of_contact += bound * across.abs() + allowed * across;
             of_contact += outside * (across.abs() + outside);
+        }
+        if let Some((rolling, velocity)) = problem.rolling(number, row, &problem.bodies.now) {
+            let bound = rolling.bound(&problem.law_of(number), shifted);
+            let allowed = law::coulomb(rolling.impulse, bound);
+            let outside = (rolling.impulse - allowed).abs();
+            of_contact += bound * velocity.abs() + allowed * velocity;
+            of_contact += outside * (velocity.abs() + outside);
         }
         self.add(problem, number, row, of_contact, lacking);
     }

@@ -45,6 +45,8 @@ pub struct Surface {
     pub before: DVec2,
     /// Additional speed along t of a surface that runs around its shape while the shape stays in place, m/s.
     pub round: f64,
+    /// Angular velocity of the shape, or of a fixed disc whose surface runs around it, rad/s.
+    pub spin: f64,
     /// True if the shape is a half-space, for which a motion along its surface changes nothing.
     pub is_half_space: bool,
     /// True if the shape moves only along its normal.
@@ -280,7 +282,12 @@ impl<M: Model> StepProblem<M> {
         let (mut whole, mut along_tangents) = (0.0, 0.0);
         for (number, row) in part.rows.fixed.iter().enumerate() {
             let [normal, tangential] = part.reduced_impulse(number, row);
-            let along_tangent = row.effective_mass * tangential * row.surface_speed;
+            let mut along_tangent = row.effective_mass * tangential * row.surface_speed;
+            if M::ROLLING
+                && let Some(rolling) = part.rows.rolling.get(number)
+            {
+                along_tangent += row.effective_mass * rolling.impulse * rolling.surface_speed;
+            }
             let speed = self.wall_speed(number_here(number));
             whole += row.effective_mass * normal * speed + along_tangent;
             along_tangents += along_tangent;

@@ -1,0 +1,179 @@
+//! The equations of a step of Newton's method (`newton`): guesses of the states of contacts, and their contributions to
+//! the equations of bodies.
+
+use crate::contact::ContactLaw;
+use crate::solver::kinematics::Model;
+use crate::solver::problem::{Rolling, Row};
+
+/// Guess of a contact's state, made from the present impulses and velocities. For a rolling moment, `Stick` and `Slip`
+/// mean below and at its bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Guess {
+    Open,
+    Stick,
+    /// The tangential impulse is at its bound, with this sign; 0 if the bound itself is 0.
+    Slip(f64),
+}
+
+impl Guess {
+    /// The guess from the trial impulses: σ, and λ_t or ψ with its bound at this σ.
+    fn new(shifted: f64, trial: f64, bound: f64) -> Self {
+        if shifted <= 0.0 {
+            return Self::Open;
+        }
+        if bound == 0.0 {
+            return Self::Slip(0.0);
+        }
+        if trial.abs() <= bound { Self::Stick } else { Self::Slip(trial.signum()) }
+    }
+}
+
+/// The next state of a contact according to its law.
+pub(super) fn guess<M: Model>(
+    law: &ContactLaw,
+    row: &Row<M>,
+    [normal_velocity, tangential_velocity]: [f64; 2],
+) -> Guess {
+    let shifted = row.shifted_impulse - normal_velocity - row.restitution_velocity;
+    let bound = if M::FRICTION { law.friction_bound(shifted) } else { 0.0 };
+    let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
+    Guess::new(shifted, row.tangential_impulse - compliance * tangential_velocity, bound)
+}
+
+/// The next state of the rolling moment of a contact with this v_n and v_r, m/s.
+pub(super) fn guess_rolling<M: Model>(
+    law: &ContactLaw,
+    row: &Row<M>,
+    normal_velocity: f64,
+    rolling: &Rolling,
+    speed: f64,
+) -> Guess {
+    let shifted = row.shifted_impulse - normal_velocity - row.restitution_velocity;
+    let trial = rolling.impulse - speed / rolling.compliance;
+    Guess::new(shifted, trial, rolling.bound(law, shifted))
+}
+
+/// The rolling moment of a contact: its v_r (m/s), its guess, and the compliance of the step.
+pub(super) struct RollingTerms<'a> {
+    pub rolling: &'a Rolling,
+    pub speed: f64,
+    pub guess: Guess,
+    pub compliance: f64,
+}
+
+/// Contribution of a contact to the equations of one of its bodies.
+pub(super) struct Terms<const D: usize> {
+    /// Gradients of v_n and v_t with respect to the body's velocity.
+    normal: [f64; D],
+    tangent: [f64; D],
+    /// Gradient of v_r; 0 without rolling friction.
+    rolling: [f64; D],
+    /// Direction of the impulse that responds to v_n: n, or n ± μt in slip, plus ±μ_r times the gradient of v_r if the
+    /// rolling moment is at its bound.
+    answer: [f64; D],
+    /// Stiffnesses of the response to v_n, v_t and v_r, kg.
+    normal_stiffness: f64,
+    tangential_stiffness: f64,
+    rolling_stiffness: f64,
+    /// Change of the impulse at the present velocities, kg·m/s.
+    load: [f64; D],
+}
+
+impl<const D: usize> Terms<D> {
+    #[inline(always)]
+    pub(super) fn new<M: Model>(
+        law: &ContactLaw,
+        row: &Row<M>,
+        [normal_velocity, tangential_velocity]: [f64; 2],
+        guess: Guess,
+        compliance: f64,
+        gradients: &[[f64; 3]; 2],
+    ) -> Self {
+        let part = |vector: &[f64; 3]| std::array::from_fn::<f64, D, _>(|axis| vector[axis]);
+        let (normal, tangent) = (part(&gradients[0]), part(&gradients[1]));
+        let mass = row.effective_mass;
+        let stiffness = mass / compliance;
+        let (shifted, tangential) = (row.shifted_impulse, row.tangential_impulse);
+        let normal_change = -(normal_velocity + row.restitution_velocity) / compliance;
+        let (slope, normal_stiffness, tangential_stiffness, changes) = match guess {
+            Guess::Open => (0.0, 0.0, 0.0, [-shifted, -tangential]),
+            Guess::Stick => {
+                let softness = M::TANGENTIAL_COMPLIANCE;
+                let tangential_change = -tangential_velocity / (softness * compliance);
+                (0.0, stiffness, stiffness / softness, [normal_change, tangential_change])
+            }
+            Guess::Slip(sign) => {
+                let slope = sign * law.friction;
+                let rubbing = law.rubbing(shifted + normal_change);
+                (slope, stiffness, 0.0, [normal_change, slope * rubbing - tangential])
+            }
+        };
+        let [normal_load, tangential_load] = changes.map(|change| mass * change);
+        Self {
+            normal,
+            tangent,
+            rolling: [0.0; D],
+            rolling_stiffness: 0.0,
+            answer: std::array::from_fn(|axis| normal[axis] + slope * tangent[axis]),
+            normal_stiffness,
+            tangential_stiffness,
+            load: std::array::from_fn(|axis| {
+                normal_load * normal[axis] + tangential_load * tangent[axis]
+            }),
+        }
+    }
+
+    /// Adds the rolling moment to the equations of i, or of j if `on_j`; the contact has this v_n, m/s.
+    #[inline(always)]
+    pub(super) fn add_rolling<M: Model>(
+        &mut self,
+        law: &ContactLaw,
+        row: &Row<M>,
+        normal_velocity: f64,
+        RollingTerms { rolling, speed, guess, compliance }: &RollingTerms<'_>,
+        on_j: bool,
+    ) {
+        let gradient = rolling.gradient(on_j);
+        self.rolling = std::array::from_fn(|axis| gradient[axis]);
+        let softness = rolling.compliance * compliance;
+        let (slope, change) = match guess {
+            Guess::Open => (0.0, -rolling.impulse),
+            Guess::Stick => {
+                self.rolling_stiffness = row.effective_mass / softness;
+                (0.0, -speed / softness)
+            }
+            Guess::Slip(sign) => {
+                let slope = sign * rolling.friction;
+                let normal_change = -(normal_velocity + row.restitution_velocity) / compliance;
+                let rubbing = law.rubbing(row.shifted_impulse + normal_change);
+                (slope, slope * rubbing - rolling.impulse)
+            }
+        };
+        for axis in 0..D {
+            self.answer[axis] += slope * self.rolling[axis];
+            self.load[axis] += row.effective_mass * change * self.rolling[axis];
+        }
+    }
+
+    /// Adds to `block` the stiffness that couples this body's equations to the velocity of `other`.
+    #[inline(always)]
+    pub(super) fn add<M: Model>(&self, block: &mut [[f64; D]; D], other: &Self) {
+        for (row, entries) in block.iter_mut().enumerate() {
+            let normal = self.normal_stiffness * self.answer[row];
+            let tangential = self.tangential_stiffness * self.tangent[row];
+            for (column, entry) in entries.iter_mut().enumerate() {
+                *entry += normal * other.normal[column] + tangential * other.tangent[column];
+                if M::ROLLING {
+                    *entry += self.rolling_stiffness * self.rolling[row] * other.rolling[column];
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn add_load(&self, vector: &mut [f64; D]) {
+        for (entry, load) in vector.iter_mut().zip(self.load) {
+            *entry += load;
+        }
+    }
+}
