@@ -69,8 +69,8 @@ fn cohesion_steepens_the_slope_with_the_shifted_cone_alone() {
 
 #[test]
 fn a_rolling_disc_stops_after_the_exact_distance() {
-    // The speed falls by aΔt per step, a = ⅔ μ_r g, until it is 0. The scheme moves the disc by Δt times the speed at the
-    // end of each step, so the distance is v²/2a − vΔt/2, up to aΔt²/8 of the last step.
+    // The speed falls by aΔt per step, a = ⅔ μ_r g, until it is 0. The scheme moves the disc by Δt times the speed at
+    // the end of each step, so the distance is v²/2a − vΔt/2, up to aΔt²/8 of the last step.
     let (speed, slowing) = (0.7, 2.0 / 3.0 * ROLLING * G);
     for method in METHODS_THAT_ROLL {
         let mut scene = on_slope(method, 0.0, FrictionCone::Shifted, 0.0);

@@ -103,8 +103,8 @@ settings! {
             "Part of the normal force that bounds friction", {
             needs: Needs::Friction,
         }
-        /// Rolling friction μ_r: the moment M of a contact obeys |M| ≤ μ_r R N, with 1/R = 1/r_i + 1/r_j and the part of
-        /// N that bounds friction.
+        /// Rolling friction μ_r: the moment M of a contact obeys |M| ≤ μ_r R N, with 1/R = 1/r_i + 1/r_j and the part
+        /// of N that bounds friction.
         #[serde(default, skip_serializing_if = "is_zero")]
         rolling_friction: f64 = 0.0, "rolling-friction" ("MU_R"),
             "Rolling friction of moreau, at least 0: the largest moment against rolling, divided by the reduced radius \

@@ -108,8 +108,8 @@ fn without_rolling(parameters: &Parameters) -> Result<()> {
 const MOREAU: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with cohesion and Coulomb's law",
     source: "A. Abramian, L. Staron, Time Steps v.s. Cohesion (2020); J. J. Moreau (1988)",
-    settings: "bond bond-acceleration dt tilt rho mu cone rolling-friction restitution-threshold touch-tolerance solver \
-        ordering stop tolerance max-sweeps warm-start friction-model model-solves",
+    settings: "bond bond-acceleration dt tilt rho mu cone rolling-friction restitution-threshold touch-tolerance \
+        solver ordering stop tolerance max-sweeps warm-start friction-model model-solves",
     takes_drives: true,
     takes_pairs: true,
     ..StepperInfo::WHOLE

@@ -8,6 +8,7 @@ mod measures;
 mod order;
 mod residual;
 mod rolling;
+mod rolling_rows;
 mod row_velocities;
 mod rows;
 mod solved;

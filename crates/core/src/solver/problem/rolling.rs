@@ -4,14 +4,14 @@
 //!
 //! > v_r = R (ω_i − ω_j) = a_i s_i − a_j s_j,  s = rω,  a_i = R/r_i,  a_j = R/r_j = 1 − a_i,
 //!
-//! or a_i s_i − R ω_w against a fixed body that turns with ω_w; a_i is 1 against a boundary. The moment impulse MΔt acts
-//! on i, and its opposite on j. In the reduced form ψ = MΔt/(R m_ij) (m/s) the law is that of Coulomb friction,
+//! or a_i s_i − R ω_w against a fixed body that turns with ω_w; a_i is 1 against a boundary. The moment impulse MΔt
+//! acts on i, and its opposite on j. The reduced form ψ = MΔt/(R m_ij), in m/s, obeys the law of Coulomb friction,
 //!
-//! > |ψ| ≤ μ_r σ',  and ψ = −μ_r σ' sign(v_r) unless v_r = 0,
+//! > |ψ| ≤ μ_r σ',  ψ = −μ_r σ' sign(v_r) unless v_r = 0,
 //!
-//! with σ' the part of σ that bounds friction (`contact::law`) and v_r at the end of the step. So M does no work while it
-//! prevents rolling, and dissipates otherwise (J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, 2011, class A, without their
-//! elastic range).
+//! with σ' the part of σ that bounds friction (`contact::law`), and v_r at the end of the step. So M does no work while
+//! it prevents rolling, and dissipates otherwise. J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi (2011) call this a
+//! directional constant torque; here the torque also holds at v_r = 0.
 //!
 //! **Response.** With I = ½mr² and g_i as in `solver::kinematics`, MΔt = R m_ij ψ changes the spins by
 //!
@@ -23,10 +23,8 @@
 //! the change that the update would make. ψ acts on v_r as λ_t acts on v_t, so it adds μ_r σ'|v_r| + ψ v_r to the gap
 //! in `velocity_error`.
 
-use super::{MovingSurfaces, Row, StepProblem};
-use crate::contact::{Contact, ContactLaw, ContactList, Numbering, Other, law};
+use crate::contact::{ContactLaw, law};
 use crate::solver::kinematics::Model;
-use crate::world::World;
 
 /// Rolling resistance of a contact.
 #[derive(Clone, Copy, Debug)]
@@ -96,94 +94,4 @@ impl Rolling {
 fn turn<M: Model>(body: &mut M::Body<f64>, change: f64) {
     let [x, y, spin] = M::coordinates(body);
     M::set(body, [x, y, spin + change]);
-}
-
-impl<M: Model> StepProblem<M> {
-    /// Adds the rolling resistance of each row, if there is any.
-    pub(super) fn fill_rolling(
-        &mut self,
-        world: &World,
-        contacts: &ContactList,
-        friction: f64,
-        warm_start: bool,
-    ) {
-        let law = self.law;
-        let rows = &mut self.rows;
-        let mut rolling = std::mem::take(&mut rows.rolling);
-        rolling.clear();
-        if M::ROLLING && friction > 0.0 {
-            let (numbering, radii) = (Numbering::of(world), &world.grains.radii);
-            rolling.extend(rows.iter().zip(&rows.contacts).enumerate().map(
-                |(number, (row, &index))| {
-                    let own = radii[row.i as usize];
-                    let lever = match numbering.other(row.j) {
-                        Other::Grain(j) => radii[j] / (own + radii[j]),
-                        Other::FixedDisc(disc) => {
-                            let radius = world.fixed_discs[disc].radius;
-                            radius / (own + radius)
-                        }
-                        Other::Feature(_) => 1.0,
-                    };
-                    let (share, radius) = (rows.share(number), lever * own);
-                    let of_j = (1.0 - share) * (1.0 - lever) * (1.0 - lever);
-                    let mut rolling = Rolling {
-                        impulse: 0.0,
-                        friction,
-                        radius,
-                        lever,
-                        compliance: 2.0 * (share * lever * lever + of_j),
-                        surface_speed: 0.0,
-                    };
-                    if warm_start {
-                        let start =
-                            contacts.rolling(index as usize) / (radius * row.effective_mass);
-                        rolling.impulse = law::coulomb(
-                            start,
-                            rolling.bound(&rows.law(number, &law), row.shifted_impulse),
-                        );
-                    }
-                    rolling
-                },
-            ));
-        }
-        rows.rolling = rolling;
-    }
-
-    /// Sets the surface speeds of fixed bodies that turn.
-    pub(super) fn turn_surfaces(&mut self, contacts: &[Contact], surfaces: &MovingSurfaces<'_>) {
-        for (rolling, &index) in self.rows.rolling.iter_mut().zip(&self.rows.contacts) {
-            let surface = (surfaces.of)(&contacts[index as usize]);
-            rolling.surface_speed = surface.map_or(0.0, |surface| rolling.radius * surface.spin);
-        }
-    }
-
-    /// Stores the rolling impulses in the contacts, N·m·s.
-    pub(super) fn store_rolling(&self, contacts: &mut ContactList) {
-        let stored = contacts.rolling_mut();
-        stored.clear();
-        if self.rows.rolling.is_empty() {
-            return;
-        }
-        stored.resize(self.rows.len(), 0.0);
-        let rows = self.rows.iter().zip(&self.rows.rolling).zip(&self.rows.contacts);
-        for ((row, rolling), &index) in rows {
-            stored[index as usize] = rolling.radius * row.effective_mass * rolling.impulse;
-        }
-    }
-
-    /// The rolling resistance of row `number`, and its v_r at the velocities `bodies`, m/s.
-    #[inline(always)]
-    pub(crate) fn rolling(
-        &self,
-        number: usize,
-        row: &Row<M>,
-        bodies: &[M::Body<f64>],
-    ) -> Option<(&Rolling, f64)> {
-        if !M::ROLLING {
-            return None;
-        }
-        let rolling = self.rows.rolling.get(number)?;
-        let j = self.rows.is_pair(number).then(|| &bodies[row.j as usize]);
-        Some((rolling, rolling.velocity::<M>(&bodies[row.i as usize], j)))
-    }
 }

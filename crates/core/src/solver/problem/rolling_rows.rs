@@ -1,0 +1,83 @@
+//! Rolling resistance of the rows of a problem: set up, read and stored.
+
+use super::{MovingSurfaces, Rolling, Row, StepProblem};
+use crate::contact::{Contact, ContactList, Numbering, Other, law};
+use crate::solver::kinematics::Model;
+use crate::world::World;
+
+impl<M: Model> StepProblem<M> {
+    /// Adds the rolling resistance of each row, if there is any.
+    pub(super) fn fill_rolling(
+        &mut self,
+        world: &World,
+        contacts: &ContactList,
+        friction: f64,
+        warm_start: bool,
+    ) {
+        self.rows.rolling.clear();
+        if !M::ROLLING || friction == 0.0 {
+            return;
+        }
+        let (numbering, radii) = (Numbering::of(world), &world.grains.radii);
+        for number in 0..self.rows.len() {
+            let (row, share) = (self.rows.get(number), self.rows.share(number));
+            let own = radii[row.i as usize];
+            let lever = match numbering.other(row.j) {
+                Other::Grain(j) => radii[j] / (own + radii[j]),
+                Other::FixedDisc(disc) => {
+                    let radius = world.fixed_discs[disc].radius;
+                    radius / (own + radius)
+                }
+                Other::Feature(_) => 1.0,
+            };
+            let squares = share * lever * lever + (1.0 - share) * (1.0 - lever) * (1.0 - lever);
+            let (radius, compliance) = (lever * own, 2.0 * squares);
+            let mut rolling =
+                Rolling { impulse: 0.0, friction, radius, lever, compliance, surface_speed: 0.0 };
+            if warm_start {
+                let stored = contacts.rolling(self.rows.contacts[number] as usize);
+                let bound = rolling.bound(&self.law_of(number), row.shifted_impulse);
+                rolling.impulse = law::coulomb(stored / (radius * row.effective_mass), bound);
+            }
+            self.rows.rolling.push(rolling);
+        }
+    }
+
+    /// Sets the surface speeds of fixed bodies that turn.
+    pub(super) fn turn_surfaces(&mut self, contacts: &[Contact], surfaces: &MovingSurfaces<'_>) {
+        for (rolling, &index) in self.rows.rolling.iter_mut().zip(&self.rows.contacts) {
+            let surface = (surfaces.of)(&contacts[index as usize]);
+            rolling.surface_speed = surface.map_or(0.0, |surface| rolling.radius * surface.spin);
+        }
+    }
+
+    /// Stores the rolling impulses in the contacts, N·m·s.
+    pub(super) fn store_rolling(&self, contacts: &mut ContactList) {
+        let stored = contacts.rolling_mut();
+        stored.clear();
+        if self.rows.rolling.is_empty() {
+            return;
+        }
+        stored.resize(self.rows.len(), 0.0);
+        let rows = self.rows.iter().zip(&self.rows.rolling).zip(&self.rows.contacts);
+        for ((row, rolling), &index) in rows {
+            stored[index as usize] = rolling.radius * row.effective_mass * rolling.impulse;
+        }
+    }
+
+    /// The rolling resistance of row `number`, and its v_r at the velocities `bodies`, m/s.
+    #[inline(always)]
+    pub(crate) fn rolling(
+        &self,
+        number: usize,
+        row: &Row<M>,
+        bodies: &[M::Body<f64>],
+    ) -> Option<(&Rolling, f64)> {
+        if !M::ROLLING {
+            return None;
+        }
+        let rolling = self.rows.rolling.get(number)?;
+        let j = self.rows.is_pair(number).then(|| &bodies[row.j as usize]);
+        Some((rolling, rolling.velocity::<M>(&bodies[row.i as usize], j)))
+    }
+}
