@@ -5,6 +5,7 @@ mod conservation;
 mod cradle;
 mod floors;
 mod impacts;
+mod lmgc90;
 mod lost_grains;
 mod materials;
 mod moments;
