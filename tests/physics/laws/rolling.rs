@@ -52,6 +52,36 @@ fn a_disc_on_a_slope_stays_up_to_its_rolling_friction_and_rolls_above() {
 }
 
 #[test]
+fn each_disc_resists_rolling_by_the_number_of_its_own_pair() {
+    const FRICTIONS: [(&str, f64); 2] = [("holds", 0.3), ("rolls", 0.1)];
+    let slope: f64 = 0.2;
+    for method in METHODS_THAT_ROLL {
+        let mut scene = on_slope(method, slope, FrictionCone::Shifted, 0.0);
+        scene.parameters.rolling_friction = 0.0;
+        let material = |name: &str| Material { name: name.into(), ..Material::default() };
+        scene.materials = ["ground", "holds", "rolls"].map(material).to_vec();
+        scene.pairs = FRICTIONS
+            .map(|(name, rolling)| MaterialPair {
+                between: [name.into(), "ground".into()],
+                rolling_friction: Some(rolling),
+                ..MaterialPair::default()
+            })
+            .to_vec();
+        let disc = scene.grains.remove(0);
+        let made_of = |name: &str, x: f64| Grain {
+            material: Some(name.into()),
+            position: disc.position + x * DVec2::X,
+            ..disc.clone()
+        };
+        scene.grains = vec![made_of("holds", 0.0), made_of("rolls", 1.0)];
+        let run = after(&scene, 500);
+        let expected = 2.0 / 3.0 * G * (slope - 0.1) / slope.hypot(1.0) * 500.0 * DT;
+        assert!(run.velocity(0).length() < 1e-12, "{method}: {}", run.velocity(0));
+        assert_close(run.velocity(1).x, expected, 1e-7, &format!("{method}"));
+    }
+}
+
+#[test]
 fn cohesion_steepens_the_slope_with_the_shifted_cone_alone() {
     // The disc stays if sinθ ≤ μ_r (cosθ + Bond), because C₀ = Bond·m·g against a boundary.
     let bond = 2.0;

@@ -66,11 +66,14 @@ impl PairLaws {
         }
     }
 
-    /// The largest μ of all pairs, and the largest C₀/m_ij, m/s², for two grains of the mean mass.
-    pub(crate) fn largest(&self, grains: &Grains) -> [f64; 2] {
+    /// The largest μ and μ_r of all pairs, and the largest C₀/m_ij, m/s², for two grains of the mean mass.
+    pub(crate) fn largest(&self, grains: &Grains) -> [f64; 3] {
         let effective_mass = 0.5 * grains.masses.iter().sum::<f64>() / grains.len() as f64;
-        let each = self.numbers.iter();
-        let each = each.map(|it| [it.friction, self.cohesion_per_mass(*it, effective_mass)]);
-        each.fold([0.0; 2], |most, it| [it[0].max(most[0]), it[1].max(most[1])])
+        let numbers = |it: &PairNumbers| {
+            [it.friction, it.rolling_friction, self.cohesion_per_mass(*it, effective_mass)]
+        };
+        let larger =
+            |most: [f64; 3], it: [f64; 3]| std::array::from_fn(|at| f64::max(most[at], it[at]));
+        self.numbers.iter().map(numbers).fold([0.0; 3], larger)
     }
 }

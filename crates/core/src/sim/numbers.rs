@@ -16,7 +16,7 @@ impl Simulation {
     pub fn picked_method(&self) -> Method {
         let Settings { solver, parameters, .. } = &self.settings;
         let rubs = self.state.physics.friction
-            && (self.state.largest_friction(parameters) > 0.0 || parameters.rolling_friction > 0.0);
+            && self.state.largest_friction(parameters).iter().any(|&it| it > 0.0);
         picked(solver, solver.friction_model, rubs, self.is_driven())
     }
 

@@ -44,8 +44,7 @@ pub(crate) struct State {
 impl State {
     /// The smallest model that computes all physics of the state.
     pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
-        let largest = [self.largest_friction(parameters), parameters.rolling_friction];
-        ModelParts::leanest(self.physics, self.world.periodic, largest)
+        ModelParts::leanest(self.physics, self.world.periodic, self.largest_friction(parameters))
     }
 
     /// The contact laws by pairs of materials; `None` if all contacts have the numbers of the parameters.
@@ -53,10 +52,15 @@ impl State {
         PairLaws::of(&self.world, parameters, self.physics)
     }
 
-    /// The largest μ of any contact.
-    pub(crate) fn largest_friction(&self, parameters: &Parameters) -> f64 {
-        let laws = self.pair_laws(parameters);
-        laws.map_or(parameters.friction, |laws| laws.largest(&self.world.grains)[0])
+    /// The largest μ and μ_r of any contact.
+    pub(crate) fn largest_friction(&self, parameters: &Parameters) -> [f64; 2] {
+        match self.pair_laws(parameters) {
+            None => [parameters.friction, parameters.rolling_friction],
+            Some(laws) => {
+                let [friction, rolling, _] = laws.largest(&self.world.grains);
+                [friction, rolling]
+            }
+        }
     }
 
     /// The number of substeps that the stepper takes per step.

@@ -154,14 +154,15 @@ impl<'a, M: Model> Stage<'a, M> {
         let State { world, physics, contacts, candidates, walls, .. } = &mut **state;
         let largest = laws.as_ref().map(|laws| laws.largest(&world.grains));
         let capture_speed = match largest {
-            Some([_, cohesion_per_mass]) => cohesion_per_mass * time_step_secs,
+            Some([.., cohesion_per_mass]) => cohesion_per_mass * time_step_secs,
             None if physics.cohesion => parameters.capture_speed(world.gravity.magnitude()),
             None => 0.0,
         };
         let numbers = ProblemNumbers {
             time_step_secs,
-            friction: largest.map_or(parameters.friction, |[friction, _]| friction),
-            rolling_friction: parameters.rolling_friction,
+            friction: largest.map_or(parameters.friction, |[friction, ..]| friction),
+            rolling_friction: largest
+                .map_or(parameters.rolling_friction, |[_, rolling, _]| rolling),
             capture_speed,
             cone: match largest {
                 Some(_) if capture_speed > 0.0 => parameters.cone,
@@ -175,6 +176,7 @@ impl<'a, M: Model> Stage<'a, M> {
                 let numbers = laws.numbers(world, candidates, contact);
                 RowNumbers {
                     friction: numbers.friction,
+                    rolling_friction: numbers.rolling_friction,
                     restitution: numbers.restitution,
                     capture_speed: laws.cohesion_per_mass(numbers, effective_mass) * time_step_secs,
                 }

@@ -34,6 +34,9 @@ pub struct MaterialPair {
     /// Friction coefficient μ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f64>,
+    /// Rolling friction μ_r.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rolling_friction: Option<f64>,
     /// Restitution ρ, 0 … 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
@@ -59,6 +62,8 @@ pub(crate) enum Cohesion {
 pub(crate) struct PairNumbers {
     /// Friction coefficient μ.
     pub friction: f64,
+    /// Rolling friction μ_r.
+    pub rolling_friction: f64,
     /// Restitution ρ.
     pub restitution: f64,
     /// Cohesion C₀.
@@ -66,8 +71,8 @@ pub(crate) struct PairNumbers {
 }
 
 impl PairNumbers {
-    /// The numbers of `pair`, or those of the parameters if the pair leaves them out. `physics` may exclude friction
-    /// and cohesion.
+    /// The numbers of `pair`, or those of the parameters if the pair leaves them out. `physics` may exclude friction,
+    /// rotation and cohesion.
     pub(crate) fn new(
         pair: Option<&MaterialPair>,
         parameters: &Parameters,
@@ -82,6 +87,10 @@ impl PairNumbers {
         Self {
             friction: match physics.friction {
                 true => given(|pair| pair.friction).unwrap_or(parameters.friction),
+                false => 0.0,
+            },
+            rolling_friction: match physics.rotation {
+                true => given(|pair| pair.rolling_friction).unwrap_or(parameters.rolling_friction),
                 false => 0.0,
             },
             restitution: given(|pair| pair.restitution).unwrap_or(parameters.restitution),
@@ -190,9 +199,10 @@ impl MaterialPair {
         for name in &self.between {
             check_name(|| field("between"), name, materials)?;
         }
-        let Self { friction, restitution, bond, cohesion_force, .. } = *self;
+        let Self { friction, rolling_friction, restitution, bond, cohesion_force, .. } = *self;
         let numbers = [
             ("friction", friction, physics.friction, "physics.friction"),
+            ("rolling_friction", rolling_friction, physics.rotation, "physics.rotation"),
             ("bond", bond, physics.cohesion, "physics.cohesion"),
             ("cohesion_force", cohesion_force, physics.cohesion, "physics.cohesion"),
         ];

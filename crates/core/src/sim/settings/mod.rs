@@ -133,7 +133,7 @@ impl Settings {
         self.solver.validate()?;
         self.check_friction_model()?;
         self.remedies.validate_each()?;
-        self.check_rolling()?;
+        self.check_rolling(self.parameters.rolling_friction > 0.0)?;
         for remedy in &REMEDIES {
             if remedy.is_on(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
                 let takers = names_of(remedy.taken_by.iter()).join(" and ");
@@ -165,14 +165,14 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the rest of the settings supports rolling friction, if there is any.
-    fn check_rolling(&self) -> Result<()> {
+    /// Checks that the rest of the settings supports rolling friction, if it is given.
+    fn check_rolling(&self, is_given: bool) -> Result<()> {
         let SolverSettings { method, friction_model, .. } = self.solver;
         let refuse = |field: &str, found: String, allowed: &str| {
             let allowed = format!("{allowed} where rolling-friction is above 0");
             Err(Error::value(field, found, allowed))
         };
-        if self.parameters.rolling_friction == 0.0 {
+        if !is_given {
             return Ok(());
         }
         if !method.info().takes_rolling {
@@ -192,6 +192,7 @@ impl Settings {
         self.check_tilt(&world.gravity, physics)?;
         self.check_shear(world.periodic)?;
         self.check_pairs(&world.pairs)?;
+        self.check_rolling(world.pairs.iter().any(|pair| pair.rolling_friction > Some(0.0)))?;
         let rolling = self.parameters.rolling_friction;
         let allowed = "0 where physics.rotation is false";
         check(rolling == 0.0 || physics.rotation, "rolling-friction", rolling, allowed)?;

@@ -81,7 +81,7 @@ pub struct ProblemNumbers {
     pub time_step_secs: f64,
     /// μ; with [`RowNumbers`], the largest of all pairs.
     pub friction: f64,
-    /// μ_r.
+    /// μ_r; with [`RowNumbers`], the largest of all pairs.
     pub rolling_friction: f64,
     /// C₀Δt/m_ij, m/s; 0 without cohesion. With [`RowNumbers`], the largest of all pairs for grains of the mean mass.
     pub capture_speed: f64,
@@ -94,6 +94,8 @@ pub struct ProblemNumbers {
 pub struct RowNumbers {
     /// μ.
     pub friction: f64,
+    /// μ_r.
+    pub rolling_friction: f64,
     /// ρ.
     pub restitution: f64,
     /// C₀Δt/m_ij, m/s.
@@ -155,7 +157,7 @@ impl<M: Model> StepProblem<M> {
             self.rows.captures.extend(self.rows.contacts.iter().map(capture));
         }
         self.fill_rows(world, contacts, fixed, settings.warm_start, &rebound);
-        self.fill_rolling(world, contacts, rolling_friction, settings.warm_start);
+        self.fill_rolling(world, contacts, (rolling_friction, numbers_of), settings.warm_start);
         self.find_what_touches();
         self.find_extent(world);
         if let Some(surfaces) = surfaces {

@@ -1,17 +1,17 @@
 //! Rolling resistance of the rows of a problem: set up, read and stored.
 
-use super::{MovingSurfaces, Rolling, Row, StepProblem};
+use super::{MovingSurfaces, NumbersOfContact, Rolling, Row, StepProblem};
 use crate::contact::{Contact, ContactList, Numbering, Other, law};
 use crate::solver::kinematics::Model;
 use crate::world::World;
 
 impl<M: Model> StepProblem<M> {
-    /// Adds the rolling resistance of each row, if there is any.
+    /// Adds the rolling resistance of each row, if there is any: μ_r is `friction`, or the row's own.
     pub(super) fn fill_rolling(
         &mut self,
         world: &World,
         contacts: &ContactList,
-        friction: f64,
+        (friction, numbers_of): (f64, Option<NumbersOfContact<'_>>),
         warm_start: bool,
     ) {
         self.rows.rolling.clear();
@@ -21,6 +21,11 @@ impl<M: Model> StepProblem<M> {
         let (numbering, radii) = (Numbering::of(world), &world.grains.radii);
         for number in 0..self.rows.len() {
             let (row, share) = (self.rows.get(number), self.rows.share(number));
+            let index = self.rows.contacts[number] as usize;
+            let own_friction = |of: NumbersOfContact<'_>| {
+                of(&contacts.contacts()[index], row.effective_mass).rolling_friction
+            };
+            let friction = numbers_of.map_or(friction, own_friction);
             let own = radii[row.i as usize];
             let lever = match numbering.other(row.j) {
                 Other::Grain(j) => radii[j] / (own + radii[j]),
@@ -35,7 +40,7 @@ impl<M: Model> StepProblem<M> {
             let mut rolling =
                 Rolling { impulse: 0.0, friction, radius, lever, compliance, surface_speed: 0.0 };
             if warm_start {
-                let stored = contacts.rolling(self.rows.contacts[number] as usize);
+                let stored = contacts.rolling(index);
                 let bound = rolling.bound(&self.law_of(number), row.shifted_impulse);
                 rolling.impulse = law::coulomb(stored / (radius * row.effective_mass), bound);
             }
