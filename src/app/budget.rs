@@ -2,7 +2,7 @@
 
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Method, SolverSettings};
-use crate::world::{FrictionCone, Periodic};
+use crate::world::{FrictionCone, Parameters, Periodic};
 
 /// A named preset of the solver.
 #[derive(Clone, Copy, Debug)]
@@ -14,13 +14,21 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Settings of the preset in these surroundings. If its solver supports no sheared borders or driven walls that
-    /// are there, uses `nsgs`.
-    pub(super) fn among(&self, surroundings: &Surroundings) -> SolverSettings {
+    /// Settings of the preset in these surroundings. If its solver supports no sheared borders, driven walls or
+    /// rolling friction that are there, uses `nsgs`.
+    pub(super) fn among(
+        &self,
+        surroundings: &Surroundings,
+        parameters: &Parameters,
+    ) -> SolverSettings {
         let info = self.settings.method.info();
         let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
         let is_driven = surroundings.moving.iter().any(|motion| motion.is_driven);
-        if (shears && !info.takes_shear) || (is_driven && !info.takes_drives) {
+        let rolls = parameters.rolling_friction > 0.0;
+        if (shears && !info.takes_shear)
+            || (is_driven && !info.takes_drives)
+            || (rolls && !info.takes_rolling)
+        {
             return self.settings.by(Method::Nsgs);
         }
         self.settings
@@ -116,7 +124,7 @@ mod tests {
 
     #[test]
     fn every_effort_is_taken_by_every_scene() {
-        assert_eq!(FAST.among(&surroundings("pile")), FAST.settings);
+        assert_eq!(FAST.among(&surroundings("pile"), &Parameters::DEFAULT), FAST.settings);
         let scenes = crate::scene::SCENES.iter();
         let mut scenes: Vec<_> =
             scenes.map(|scene| built_in(scene.name).expect("a scene")).collect();
@@ -125,13 +133,16 @@ mod tests {
         let forces = drives.map(|drive| (drive.force, drive.pressure) = (Some(0.0), None));
         assert!(forces.count() > 0, "a wall that nothing but grains pushes is driven, too");
         scenes.push(unforced);
+        let mut rolling = built_in("pile").expect("a scene");
+        rolling.parameters.rolling_friction = 0.2;
+        scenes.push(rolling);
         for scene in scenes {
             let name = &scene.name;
             let mut run = scene.simulation().expect("a sound scene");
             let uses_method = run.settings().stepper.uses_method();
             let surroundings = run.snapshot().surroundings;
             for effort in BUDGETS.iter().filter(|_| uses_method) {
-                let solver = effort.among(&surroundings);
+                let solver = effort.among(&surroundings, &scene.parameters);
                 run.set_solver(solver).unwrap_or_else(|error| panic!("{name}: {error}"));
                 assert_eq!(solver.max_sweeps, effort.settings.max_sweeps, "{name}");
             }

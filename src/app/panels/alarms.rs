@@ -30,7 +30,8 @@ fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let Settings { parameters, solver, .. } = world.controls.settings;
     match alarm.kind {
         AlarmKind::SweepLimit => {
-            solver == FAST.among(&world.snapshot.surroundings) && parameters.bond == 0.0
+            solver == FAST.among(&world.snapshot.surroundings, &parameters)
+                && parameters.bond == 0.0
         }
         // The alarm stays when the overlap has gone.
         AlarmKind::Overlap => {

@@ -125,7 +125,7 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
         ui.spacing_mut().item_spacing.x = 3.0;
         for effort in BUDGETS {
             let Budget { name, hint, .. } = effort;
-            let solver = effort.among(surroundings);
+            let solver = effort.among(surroundings, &settings.parameters);
             if ui.selectable_label(settings.solver == solver, name).on_hover_text(hint).clicked() {
                 settings.solver = solver;
             }

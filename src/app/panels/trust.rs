@@ -21,7 +21,7 @@ use crate::config::Config;
 use crate::error::Error;
 use crate::live::WorldFrame;
 use crate::output::counted;
-use crate::sim::AlarmKind;
+use crate::sim::{AlarmKind, Settings};
 use crate::study::{BudgetOptions, ErrorBudget, Trust, made_budget};
 
 /// Time that a budget may take of the idle cores, s.
@@ -215,9 +215,10 @@ fn solved(world: &WorldFrame) -> Vec<String> {
         "velocities of the last one are off by some {} mm/s",
         compact(1e3 * last.velocity_error)
     );
-    if world.controls.settings.solver == FAST.among(&world.snapshot.surroundings) {
+    let Settings { parameters, solver, .. } = &world.controls.settings;
+    if *solver == FAST.among(&world.snapshot.surroundings, parameters) {
         let mut lines = vec![format!("● A step gets 40 sweeps, solved or not: {off}.")];
-        if world.controls.settings.parameters.bond > 0.0 {
+        if parameters.bond > 0.0 {
             lines.push(
                 "● With cohesion piles fall so that stand if they are solved: Solved, under Law, solver, does that."
                     .into(),
@@ -231,7 +232,7 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     }
     let steps = counted(last.step, "step");
     let mut lines = vec![format!("● {unsolved} of {steps} were not solved as asked, {off}.")];
-    if world.controls.settings.solver != SOLVED.among(&world.snapshot.surroundings) {
+    if *solver != SOLVED.among(&world.snapshot.surroundings, parameters) {
         lines.push("● Solved, under Law, solver, leaves fewer.".into());
     }
     lines

@@ -142,8 +142,7 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
                 row.solve_rolling::<MEASURE>(rolling, None, &law_of(number), bodies, change);
             }
         };
-    let mut solve_pair = |number: usize, row: &mut PairRow<M>, bodies: &mut [_], change: &mut _| {
-        row.solve::<MEASURE>(bodies, change, project(first_pair + number));
+    let mut roll_pair = |number: usize, row: &PairRow<M>, bodies: &mut [_], change: &mut _| {
         if M::ROLLING
             && let Some(rolling) = rolling_pairs.get_mut(number)
         {
@@ -153,7 +152,8 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     };
     if backward {
         for (number, row) in pairs.iter_mut().enumerate().rev() {
-            solve_pair(number, row, bodies, &mut change);
+            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            roll_pair(number, row, bodies, &mut change);
         }
         for (number, row) in fixed.iter_mut().enumerate().rev() {
             solve_fixed(number, row, bodies, &mut change);
@@ -163,7 +163,8 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
             solve_fixed(number, row, bodies, &mut change);
         }
         for (number, row) in pairs.iter_mut().enumerate() {
-            solve_pair(number, row, bodies, &mut change);
+            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            roll_pair(number, row, bodies, &mut change);
         }
     }
     if DRIVEN {
