@@ -5,6 +5,17 @@ use crate::world::{
     Cohesion, Grains, Material, PairNumbers, Parameters, Physics, World, materials_of,
 };
 
+/// The numbers of the law of one contact.
+#[derive(Clone, Copy, Debug)]
+pub struct RowNumbers {
+    /// Friction coefficient μ.
+    pub friction: f64,
+    /// Restitution ρ.
+    pub restitution: f64,
+    /// C₀/m_ij, m/s².
+    pub cohesion_per_mass: f64,
+}
+
 /// Contact laws by pairs of materials, for worlds whose pairs have numbers of their own.
 #[derive(Clone, Debug)]
 pub(crate) struct PairLaws {
@@ -42,35 +53,39 @@ impl PairLaws {
         })
     }
 
-    /// The numbers of a contact.
+    /// The numbers of a contact with this effective mass, kg.
     pub(crate) fn numbers(
         &self,
         world: &World,
         candidates: &Candidates,
         contact: &Contact,
-    ) -> PairNumbers {
+        effective_mass: f64,
+    ) -> RowNumbers {
         let one = world.grains.material(contact.grain as usize);
         let other = match Numbering::of(world).other(contact.other) {
             Other::Grain(grain) => world.grains.material(grain),
             Other::FixedDisc(disc) => self.of_disc[disc],
             Other::Feature(feature) => self.of_boundary[candidates.boundary_of(feature)],
         };
-        self.numbers[self.count * usize::from(one) + usize::from(other)]
+        let pair = self.numbers[self.count * usize::from(one) + usize::from(other)];
+        self.at_mass(pair, effective_mass)
     }
 
-    /// C₀/m_ij, m/s².
-    pub(crate) fn cohesion_per_mass(&self, numbers: PairNumbers, effective_mass: f64) -> f64 {
-        match numbers.cohesion {
+    fn at_mass(&self, pair: PairNumbers, effective_mass: f64) -> RowNumbers {
+        let PairNumbers { friction, restitution, cohesion } = pair;
+        let cohesion_per_mass = match cohesion {
             Cohesion::Bond(bond) => law::cohesion_force(bond, 1.0, self.acceleration),
             Cohesion::Force(force) => force / effective_mass,
-        }
+        };
+        RowNumbers { friction, restitution, cohesion_per_mass }
     }
 
     /// The largest μ of all pairs, and the largest C₀/m_ij, m/s², for two grains of the mean mass.
     pub(crate) fn largest(&self, grains: &Grains) -> [f64; 2] {
         let effective_mass = 0.5 * grains.masses.iter().sum::<f64>() / grains.len() as f64;
-        let each = self.numbers.iter();
-        let each = each.map(|it| [it.friction, self.cohesion_per_mass(*it, effective_mass)]);
-        each.fold([0.0; 2], |most, it| [it[0].max(most[0]), it[1].max(most[1])])
+        self.numbers.iter().fold([0.0; 2], |[friction, cohesion], &pair| {
+            let numbers = self.at_mass(pair, effective_mass);
+            [numbers.friction.max(friction), numbers.cohesion_per_mass.max(cohesion)]
+        })
     }
 }
