@@ -86,7 +86,7 @@ const VIRIDIS: [Colour; 9] = [
     Colour::hex(0xfde725),
 ];
 
-/// Colours of materials, which colour-blind people can distinguish (Okabe & Ito). The colours of force chains come last.
+/// Colours of materials, which colour-blind people can distinguish (Okabe & Ito). Those of force chains come last.
 pub(super) const MATERIALS: [Colour; 7] = [
     Colour::hex(0xe69f00),
     Colour::hex(0x56b4e9),

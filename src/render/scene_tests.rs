@@ -9,7 +9,7 @@ use super::colour_scale::ColourScale;
 use super::scene::scene_picture;
 use super::*;
 use crate::sim::{ContactView, GrainView, Observables, Snapshot, Surroundings};
-use crate::world::{Boundary, Disc, Material, Periodic};
+use crate::world::{Boundary, Disc, Periodic};
 
 /// Four grains in a row and three contacts, `at` m from the origin.
 fn row_of_grains(at: DVec2) -> Snapshot {
@@ -121,32 +121,6 @@ fn what_lies_outside_the_picture_is_not_drawn() {
         Batch::Links(_) => 0,
     });
     assert_eq!(discs.sum::<usize>(), 4, "two grains, a fixed disc and the centre of attraction");
-}
-
-#[test]
-fn grains_of_a_material_share_a_colour_and_the_legend_names_it() {
-    let mut snapshot = row_of_grains(DVec2::ZERO);
-    for (grain, material) in snapshot.grains.iter_mut().zip([0, 1, 0, 2]) {
-        grain.material = material;
-    }
-    let style = Style { colour_by: ColourBy::Material, ..Style::default() };
-    let scale = ColourScale::new(&style, &snapshot);
-    let [one, other, again, third] = [0, 1, 2, 3].map(|k| scale.colour(&snapshot.grains[k], 1.0));
-    assert!(one == again && one != other && one != third && other != third);
-    let legend = |names: &[&str]| {
-        let mut snapshot = snapshot.clone();
-        let material = |&name: &&str| Material { name: name.to_owned(), ..Material::default() };
-        Arc::make_mut(&mut snapshot.surroundings).materials = names.iter().map(material).collect();
-        drawn(&snapshot, &style)
-    };
-    let short = legend(&["a", "b", "c"]);
-    assert_ne!(short, legend(&["a", "b", "glass"]));
-    // One swatch for each material, each of its own colour.
-    for colour in [one, other, third] {
-        let pixels = short.enumerate_pixels();
-        let swatch = pixels.filter(|(x, _, pixel)| *x > 250 && **pixel == colour.to_rgba8());
-        assert!(swatch.count() > 50, "{colour:?}");
-    }
 }
 
 #[test]

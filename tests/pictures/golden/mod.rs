@@ -23,6 +23,7 @@ use slump::render::{
     ColourBy, PanelGrid, Renderer, RendererChoice, Style, Theme, bounds, draw_scene,
 };
 use slump::sim::Snapshot;
+use slump::world::Material;
 
 const GPU: Tolerance = Tolerance { channel: 2, pixels: 0.01 };
 const CPU: Tolerance = Tolerance { channel: 3, pixels: 1.0 };
@@ -31,6 +32,34 @@ const CPU: Tolerance = Tolerance { channel: 3, pixels: 1.0 };
 fn the_processor_draws_the_pictures_that_are_kept() {
     let mut cpu = Renderer::new(RendererChoice::Cpu).unwrap();
     assert_kept(&mut [("cpu", &mut cpu)], CPU);
+}
+
+#[test]
+fn grains_of_a_material_share_a_colour_that_the_legend_shows() {
+    let mut cpu = Renderer::new(RendererChoice::Cpu).unwrap();
+    let style = Style { colour_by: ColourBy::Material, ..Style::default() };
+    let mut snapshot = states::pile();
+    let names = ["glass", "steel"].map(str::to_owned);
+    std::sync::Arc::make_mut(&mut snapshot.surroundings).materials =
+        names.map(|name| Material { name, ..Material::default() }).to_vec();
+    let mut counts = |snapshot: &Snapshot| {
+        let picture = scene(&mut cpu, snapshot, &style, 640, 400).unwrap();
+        // Orange and sky blue, in the scene and in the strip of the legend.
+        [[230, 159, 0, 255], [86, 180, 233, 255]].map(|colour| {
+            [0..500, 530..640].map(|columns| {
+                let is_there = |&(x, _, pixel): &(u32, u32, &image::Rgba<u8>)| {
+                    columns.contains(&x) && pixel.0 == colour
+                };
+                picture.enumerate_pixels().filter(is_there).count()
+            })
+        })
+    };
+    let [[grains, swatch], [none, other_swatch]] = counts(&snapshot);
+    assert!(grains > 10_000 && none == 0, "{grains}, {none}");
+    assert!(swatch > 100 && swatch == other_swatch, "{swatch}, {other_swatch}");
+    snapshot.grains.iter_mut().step_by(2).for_each(|grain| grain.material = 1);
+    let [[one, _], [other, _]] = counts(&snapshot);
+    assert!(one.abs_diff(other) < grains / 10 && one + other > grains * 9 / 10, "{one}, {other}");
 }
 
 /// Draws each golden picture by some renderers, each with the name of its kind, and compares it with its file.

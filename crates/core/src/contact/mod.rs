@@ -32,5 +32,6 @@ pub use law::ContactLaw;
 pub use numbering::{Numbering, Other};
 pub use pair::{Contact, ContactMemory, Impulse};
 pub(crate) use pair_laws::PairLaws;
+pub use pair_laws::RowNumbers;
 pub(crate) use too_close::check_distances;
 pub(crate) use transmitted::Transmitted;

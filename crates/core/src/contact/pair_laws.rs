@@ -5,6 +5,19 @@ use crate::world::{
     Cohesion, Grains, Material, PairNumbers, Parameters, Physics, World, materials_of,
 };
 
+/// The numbers of the law of one contact.
+#[derive(Clone, Copy, Debug)]
+pub struct RowNumbers {
+    /// Friction coefficient μ.
+    pub friction: f64,
+    /// Rolling friction μ_r.
+    pub rolling_friction: f64,
+    /// Restitution ρ.
+    pub restitution: f64,
+    /// C₀/m_ij, m/s².
+    pub cohesion_per_mass: f64,
+}
+
 /// Contact laws by pairs of materials, for worlds whose pairs have numbers of their own.
 #[derive(Clone, Debug)]
 pub(crate) struct PairLaws {
@@ -42,38 +55,43 @@ impl PairLaws {
         })
     }
 
-    /// The numbers of a contact.
+    /// The numbers of a contact with this effective mass, kg.
     pub(crate) fn numbers(
         &self,
         world: &World,
         candidates: &Candidates,
         contact: &Contact,
-    ) -> PairNumbers {
+        effective_mass: f64,
+    ) -> RowNumbers {
         let one = world.grains.material(contact.grain as usize);
         let other = match Numbering::of(world).other(contact.other) {
             Other::Grain(grain) => world.grains.material(grain),
             Other::FixedDisc(disc) => self.of_disc[disc],
             Other::Feature(feature) => self.of_boundary[candidates.boundary_of(feature)],
         };
-        self.numbers[self.count * usize::from(one) + usize::from(other)]
+        let pair = self.numbers[self.count * usize::from(one) + usize::from(other)];
+        self.at_mass(pair, effective_mass)
     }
 
-    /// C₀/m_ij, m/s².
-    pub(crate) fn cohesion_per_mass(&self, numbers: PairNumbers, effective_mass: f64) -> f64 {
-        match numbers.cohesion {
+    fn at_mass(&self, pair: PairNumbers, effective_mass: f64) -> RowNumbers {
+        let PairNumbers { friction, rolling_friction, restitution, cohesion } = pair;
+        let cohesion_per_mass = match cohesion {
             Cohesion::Bond(bond) => law::cohesion_force(bond, 1.0, self.acceleration),
             Cohesion::Force(force) => force / effective_mass,
-        }
+        };
+        RowNumbers { friction, rolling_friction, restitution, cohesion_per_mass }
     }
 
     /// The largest μ and μ_r of all pairs, and the largest C₀/m_ij, m/s², for two grains of the mean mass.
     pub(crate) fn largest(&self, grains: &Grains) -> [f64; 3] {
         let effective_mass = 0.5 * grains.masses.iter().sum::<f64>() / grains.len() as f64;
-        let numbers = |it: &PairNumbers| {
-            [it.friction, it.rolling_friction, self.cohesion_per_mass(*it, effective_mass)]
-        };
-        let larger =
-            |most: [f64; 3], it: [f64; 3]| std::array::from_fn(|at| f64::max(most[at], it[at]));
-        self.numbers.iter().map(numbers).fold([0.0; 3], larger)
+        self.numbers.iter().fold([0.0; 3], |[friction, rolling, cohesion], &pair| {
+            let numbers = self.at_mass(pair, effective_mass);
+            [
+                numbers.friction.max(friction),
+                numbers.rolling_friction.max(rolling),
+                numbers.cohesion_per_mass.max(cohesion),
+            ]
+        })
     }
 }

@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{Bond, TOUCH_IN_DIAMETERS};
-use crate::contact::{Candidates, Contact, Impulse, Numbering, Other, PairLaws, Transmitted};
+use crate::contact::{
+    Candidates, Contact, Impulse, Numbering, Other, PairLaws, RowNumbers, Transmitted,
+};
 use crate::number::Parts;
 use crate::setting::words;
 use crate::sim::observables::Observables;
@@ -15,7 +17,7 @@ use crate::sim::settings::{Settings, Stepper};
 use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
-use crate::world::{FrictionCone, PairNumbers, Parameters, World};
+use crate::world::{FrictionCone, Parameters, World};
 
 /// Largest relative distance of a friction force from its bound that counts as slip. If smaller, slipping contacts of
 /// solvers that end near the bound count as sticking; if larger, sticking contacts near the bound count as slipping.
@@ -265,7 +267,8 @@ impl<'a> Laws<'a> {
             FrictionCone::Shifted => pushed_together,
             FrictionCone::Compressive => normal.positive_part(),
         };
-        let friction = self.numbers(contact).map_or(self.friction, |numbers| numbers.friction);
+        let numbers = self.numbers(contact, 1.0);
+        let friction = numbers.map_or(self.friction, |numbers| numbers.friction);
         if tangential.abs() >= (1.0 - SLIPS_WITHIN) * friction * rubbing {
             ContactStatus::Slip
         } else {
@@ -273,10 +276,10 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// The numbers of a contact's pair of materials, if pairs have their own.
-    fn numbers(&self, contact: &Contact) -> Option<PairNumbers> {
+    /// The numbers of a contact with this effective mass, kg, if pairs of materials have their own.
+    fn numbers(&self, contact: &Contact, effective_mass: f64) -> Option<RowNumbers> {
         let pairs = self.pairs.as_ref()?;
-        Some(pairs.numbers(self.world, self.candidates, contact))
+        Some(pairs.numbers(self.world, self.candidates, contact, effective_mass))
     }
 
     /// C₀, newton; 0 for a pair without a bond under a law that requires one.
@@ -287,8 +290,8 @@ impl<'a> Laws<'a> {
         let masses = &self.world.grains.masses;
         let mass = masses[contact.grain as usize];
         let per_mass = 1.0 / mass + other.grain().map_or(0.0, |index| 1.0 / masses[index]);
-        if let (Some(pairs), Some(numbers)) = (&self.pairs, self.numbers(contact)) {
-            return pairs.cohesion_per_mass(numbers, 1.0 / per_mass) / per_mass;
+        if let Some(numbers) = self.numbers(contact, 1.0 / per_mass) {
+            return numbers.cohesion_per_mass / per_mass;
         }
         let g = self.world.gravity.magnitude();
         let acceleration = self.parameters.cohesion_acceleration(g);

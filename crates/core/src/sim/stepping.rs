@@ -5,9 +5,9 @@ use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
     Approach, BodySystem, Measures, Memory, Model, MovingSurfaces, NumbersOfContact,
-    ProblemNumbers, RowNumbers, Slot, SolveReport, StepProblem, cone_of, measure, solve,
+    ProblemNumbers, Slot, SolveReport, StepProblem, cone_of, measure, solve,
 };
-use crate::world::{FrictionCone, World};
+use crate::world::{Parameters, World};
 
 /// Result of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -158,29 +158,18 @@ impl<'a, M: Model> Stage<'a, M> {
             None if physics.cohesion => parameters.capture_speed(world.gravity.magnitude()),
             None => 0.0,
         };
+        let bond = largest.map_or(parameters.bond, |_| capture_speed);
         let numbers = ProblemNumbers {
             time_step_secs,
             friction: largest.map_or(parameters.friction, |[friction, ..]| friction),
             rolling_friction: largest
                 .map_or(parameters.rolling_friction, |[_, rolling, _]| rolling),
             capture_speed,
-            cone: match largest {
-                Some(_) if capture_speed > 0.0 => parameters.cone,
-                Some(_) => FrictionCone::Shifted,
-                None => cone_of(*physics, parameters),
-            },
+            cone: cone_of(*physics, &Parameters { bond, ..*parameters }),
         };
         let numbers_of = laws.map(|laws| {
             let (world, candidates) = (&*world, &*candidates);
-            move |contact: &_, effective_mass: f64| {
-                let numbers = laws.numbers(world, candidates, contact);
-                RowNumbers {
-                    friction: numbers.friction,
-                    rolling_friction: numbers.rolling_friction,
-                    restitution: numbers.restitution,
-                    capture_speed: laws.cohesion_per_mass(numbers, effective_mass) * time_step_secs,
-                }
-            }
+            move |contact: &_, mass| laws.numbers(world, candidates, contact, mass)
         });
         let numbers_of = numbers_of.as_ref().map(|of| of as NumbersOfContact<'_>);
         let surface_of = |contact: &_| walls.surface(world, contact);

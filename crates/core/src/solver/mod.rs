@@ -40,9 +40,9 @@ pub use model::{ModelParts, Slot, Slots, Slotted};
 pub use onlooker::{SolveProgress, is_ended, look_on};
 pub use problem::{
     Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures,
-    MovingSurfaces, NumbersOfContact, PairRow, ProblemNumbers, Rolling, Row, RowNumbers,
-    RowVelocities, StepProblem, Surface, VelocityError, for_each_row, measure, relative_velocities,
-    residual, velocity_error, worst,
+    MovingSurfaces, NumbersOfContact, PairRow, ProblemNumbers, Rolling, Row, RowVelocities,
+    StepProblem, Surface, VelocityError, for_each_row, measure, relative_velocities, residual,
+    velocity_error, worst,
 };
 pub use settings::{FrictionModel, SolverChanges, SolverSettings, StopTest};
 pub use solutions::{

@@ -60,18 +60,14 @@ impl Grain {
         }
     }
 
-    /// The number of its material, and its mass, kg: its own, or πr² times the areal density (kg/m²) of its material
-    /// or of the scene.
-    pub(crate) fn material_and_mass(
-        &self,
-        areal_density: f64,
-        materials: &[Material],
-    ) -> (usize, f64) {
+    /// The number of its material, and its mass, kg: its own, or πr² times the areal density of its material, or
+    /// `density`, kg/m².
+    pub(crate) fn material_and_mass(&self, density: f64, materials: &[Material]) -> (usize, f64) {
         let number = self.material.as_ref().and_then(|name| number_of(materials, name));
         let number = number.unwrap_or(0);
-        let density = materials.get(number).and_then(|material| material.areal_density);
-        let implied =
-            density.unwrap_or(areal_density) * std::f64::consts::PI * self.radius * self.radius;
+        let own_density = materials.get(number).and_then(|material| material.areal_density);
+        let density = own_density.unwrap_or(density);
+        let implied = density * std::f64::consts::PI * self.radius * self.radius;
         (number, self.mass.unwrap_or(implied))
     }
 }
@@ -123,28 +119,18 @@ impl Grains {
         Self::of_materials(grains, areal_density, &[])
     }
 
-    /// Builds the lists from `grains` of these materials. `areal_density` in kg/m², for materials without their own.
-    pub(crate) fn of_materials(
-        grains: &[Grain],
-        areal_density: f64,
-        materials: &[Material],
-    ) -> Self {
+    /// Builds the lists from `grains` of these materials. `density` in kg/m², for materials without their own.
+    pub(crate) fn of_materials(grains: &[Grain], density: f64, materials: &[Material]) -> Self {
         let mut lists = Self::default();
         let ids = grains.iter().zip(0..);
-        ids.for_each(|(grain, id)| lists.push(grain, areal_density, materials, id));
+        ids.for_each(|(grain, id)| lists.push(grain, density, materials, id));
         lists.count_at_start = lists.len() as u32;
         lists
     }
 
-    /// Appends a grain of one of `materials` with number `id`. `areal_density` in kg/m².
-    pub(crate) fn push(
-        &mut self,
-        grain: &Grain,
-        areal_density: f64,
-        materials: &[Material],
-        id: u32,
-    ) {
-        let (material, mass) = grain.material_and_mass(areal_density, materials);
+    /// Appends a grain of one of `materials` with number `id`. `density` as in [`Self::of_materials`].
+    pub(crate) fn push(&mut self, grain: &Grain, density: f64, materials: &[Material], id: u32) {
+        let (material, mass) = grain.material_and_mass(density, materials);
         if !materials.is_empty() {
             self.materials.push(material as u8);
         }

@@ -37,7 +37,9 @@ pub(crate) use self::walls::MovingWalls;
 pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, MovingSurfaces, Surface};
 use super::kinematics::Model;
 use super::settings::{FrictionModel, SolverSettings};
-use crate::contact::{Contact, ContactLaw, ContactList, Impulse, Numbering, Other, law};
+use crate::contact::{
+    Contact, ContactLaw, ContactList, Impulse, Numbering, Other, RowNumbers, law,
+};
 use crate::number::Parts;
 use crate::threads;
 use crate::world::{FrictionCone, World};
@@ -79,27 +81,15 @@ pub struct StepProblem<M: Model> {
 pub struct ProblemNumbers {
     /// Δt, s.
     pub time_step_secs: f64,
-    /// μ; with [`RowNumbers`], the largest of all pairs.
+    /// μ; if contacts have [`RowNumbers`], the largest of all pairs.
     pub friction: f64,
-    /// μ_r; with [`RowNumbers`], the largest of all pairs.
+    /// μ_r; if contacts have [`RowNumbers`], the largest of all pairs.
     pub rolling_friction: f64,
-    /// C₀Δt/m_ij, m/s; 0 without cohesion. With [`RowNumbers`], the largest of all pairs for grains of the mean mass.
+    /// C₀Δt/m_ij, m/s; 0 without cohesion. If contacts have [`RowNumbers`], the largest of all pairs for grains of the
+    /// mean mass.
     pub capture_speed: f64,
     /// The part of the normal force that friction acts on; the shifted cone if there is no cohesion.
     pub cone: FrictionCone,
-}
-
-/// The numbers of the law of one contact.
-#[derive(Clone, Copy, Debug)]
-pub struct RowNumbers {
-    /// μ.
-    pub friction: f64,
-    /// μ_r.
-    pub rolling_friction: f64,
-    /// ρ.
-    pub restitution: f64,
-    /// C₀Δt/m_ij, m/s.
-    pub capture_speed: f64,
 }
 
 /// Computes the numbers of a contact from its effective mass m_ij, kg.
@@ -150,7 +140,7 @@ impl<M: Model> StepProblem<M> {
         let ContactRows { captures, frictions, restitutions, .. } = &mut self.rows;
         [captures, frictions, restitutions].into_iter().for_each(Vec::clear);
         if let Some(numbers_of) = numbers_of {
-            self.take_numbers(world, contacts, numbers_of);
+            self.take_numbers(world, contacts, numbers_of, time_step_secs);
         } else if contacts.looks_ahead() && capture_speed > 0.0 {
             let in_touch = |&index: &u32| contacts.is_in_touch(index as usize);
             let capture = |index| if in_touch(index) { capture_speed } else { 0.0 };
@@ -174,6 +164,7 @@ impl<M: Model> StepProblem<M> {
         world: &World,
         list: &ContactList,
         numbers_of: NumbersOfContact<'_>,
+        time_step_secs: f64,
     ) {
         let ContactRows { contacts, captures, frictions, restitutions, .. } = &mut self.rows;
         let masses = &world.grains.masses;
@@ -186,7 +177,8 @@ impl<M: Model> StepProblem<M> {
             let numbers = numbers_of(contact, effective_mass);
             frictions.push(numbers.friction);
             restitutions.push(numbers.restitution);
-            captures.push(if list.is_in_touch(index) { numbers.capture_speed } else { 0.0 });
+            let capture_speed = numbers.cohesion_per_mass * time_step_secs;
+            captures.push(if list.is_in_touch(index) { capture_speed } else { 0.0 });
         }
     }
 
