@@ -7,7 +7,7 @@
 
 mod by_faer;
 #[allow(dead_code, reason = "solvers need more of it")]
-#[path = "../../../src/solver/linear/mod.rs"]
+#[path = "../../../crates/core/src/solver/linear/mod.rs"]
 mod linear;
 mod matrix;
 mod ours;

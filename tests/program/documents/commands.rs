@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use slump::world::{GravityTurn, Motion, Periodic};
+use slump::world::{GravityTurn, Material, MaterialPair, Motion, Periodic};
 
 use super::{blocks, book, pages, root};
 use crate::program::*;
@@ -88,6 +88,10 @@ struct PartOfScene {
     _gravity_turn: Option<GravityTurn>,
     #[serde(rename = "periodic")]
     _periodic: Option<Periodic>,
+    #[serde(rename = "materials")]
+    _materials: Option<Vec<Material>>,
+    #[serde(rename = "pairs")]
+    _pairs: Option<Vec<MaterialPair>>,
 }
 
 #[test]

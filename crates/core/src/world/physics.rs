@@ -1,0 +1,39 @@
+//! The parts of mechanics that a scene needs.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+
+/// The physics that a scene needs. Steps are compiled separately for each combination.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Physics {
+    /// Number of axes: 1 (all on the x axis) or 2.
+    pub axes: u8,
+    /// True if contacts carry tangential impulses.
+    pub friction: bool,
+    /// True if grains turn. Requires friction, because without friction nothing changes a disc's spin.
+    pub rotation: bool,
+    /// True if contacts can pull.
+    pub cohesion: bool,
+}
+
+impl Physics {
+    /// Two axes, friction, rotation and cohesion.
+    pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
+
+    pub(crate) fn validate(&self) -> Result<()> {
+        match (self.axes, self.friction, self.rotation) {
+            (1 | 2, false, true) => {
+                Err(Error::value("physics.rotation", true, "false where physics.friction is false"))
+            }
+            (1, true, _) => Err(Error::value(
+                "physics.friction",
+                true,
+                "false where physics.axes is 1: a line has no tangent",
+            )),
+            (1 | 2, ..) => Ok(()),
+            (axes, ..) => Err(Error::value("physics.axes", axes, "1 or 2")),
+        }
+    }
+}
