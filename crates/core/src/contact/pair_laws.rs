@@ -40,7 +40,7 @@ impl PairLaws {
         let numbers = |one: &Material, other: &Material| {
             let between = [one.name.clone(), other.name.clone()];
             let pair = pairs.iter().find(|pair| pair.is_between(&between));
-            PairNumbers::new(pair, parameters, physics)
+            PairNumbers::new(pair, parameters, [physics.friction, physics.cohesion])
         };
         let of_pairs =
             materials.iter().flat_map(|one| materials.iter().map(move |other| numbers(one, other)));

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Parameters, Physics};
+use super::Parameters;
 use crate::error::{self, Error, Result};
 
 /// Upper limit for the number of materials: the number of a material is stored in one byte per grain.
@@ -66,21 +66,21 @@ pub(crate) struct PairNumbers {
 }
 
 impl PairNumbers {
-    /// The numbers of `pair`, or those of the parameters if the pair leaves them out. `physics` may exclude friction
-    /// and cohesion.
+    /// The numbers of `pair`, or those of the parameters if the pair leaves them out. Scenes may exclude friction or
+    /// cohesion.
     pub(crate) fn new(
         pair: Option<&MaterialPair>,
         parameters: &Parameters,
-        physics: Physics,
+        [has_friction, has_cohesion]: [bool; 2],
     ) -> Self {
         let given = |of: fn(&MaterialPair) -> Option<f64>| pair.and_then(of);
         let cohesion = match given(|pair| pair.cohesion_force) {
-            _ if !physics.cohesion => Cohesion::Bond(0.0),
+            _ if !has_cohesion => Cohesion::Bond(0.0),
             Some(force) => Cohesion::Force(force),
             None => Cohesion::Bond(given(|pair| pair.bond).unwrap_or(parameters.bond)),
         };
         Self {
-            friction: match physics.friction {
+            friction: match has_friction {
                 true => given(|pair| pair.friction).unwrap_or(parameters.friction),
                 false => 0.0,
             },
@@ -126,12 +126,13 @@ pub(crate) fn check_name(
     Err(Error::value(field(), name, allowed))
 }
 
-/// Checks the materials and the pairs of a world with this many boundaries and fixed discs.
+/// Checks the materials and the pairs of a world with this many boundaries and fixed discs, with or without friction
+/// and cohesion.
 pub(super) fn check_materials(
     materials: &[Material],
     pairs: &[MaterialPair],
     [boundaries, fixed_discs]: [usize; 2],
-    physics: Physics,
+    has: [bool; 2],
 ) -> Result<()> {
     let (count, allowed) = (materials.len(), format!("at most {MOST_MATERIALS}"));
     error::check(count <= MOST_MATERIALS, "the number of materials", count, allowed)?;
@@ -148,7 +149,7 @@ pub(super) fn check_materials(
     check_bodies("boundaries", materials, |material| &material.boundaries, boundaries)?;
     check_bodies("fixed_discs", materials, |material| &material.fixed_discs, fixed_discs)?;
     for (index, pair) in pairs.iter().enumerate() {
-        pair.check(index, materials, physics)?;
+        pair.check(index, materials, has)?;
         if let Some(other) = pairs[..index].iter().position(|other| other.is_between(&pair.between))
         {
             let between = pair.between.join(" and ");
@@ -185,16 +186,16 @@ impl MaterialPair {
         (first, second) == (one, other) || (first, second) == (other, one)
     }
 
-    fn check(&self, index: usize, materials: &[Material], physics: Physics) -> Result<()> {
+    fn check(&self, index: usize, materials: &[Material], has: [bool; 2]) -> Result<()> {
         let field = |name: &str| format!("pairs[{index}].{name}");
         for name in &self.between {
             check_name(|| field("between"), name, materials)?;
         }
         let Self { friction, restitution, bond, cohesion_force, .. } = *self;
         let numbers = [
-            ("friction", friction, physics.friction, "physics.friction"),
-            ("bond", bond, physics.cohesion, "physics.cohesion"),
-            ("cohesion_force", cohesion_force, physics.cohesion, "physics.cohesion"),
+            ("friction", friction, has[0], "physics.friction"),
+            ("bond", bond, has[1], "physics.cohesion"),
+            ("cohesion_force", cohesion_force, has[1], "physics.cohesion"),
         ];
         for (name, value, is_computed, switch) in numbers {
             let value = value.unwrap_or(0.0);

@@ -84,7 +84,8 @@ impl World {
         let Self { boundaries, motions, gravity, .. } = self;
         let fixed_discs = self.fixed_discs.len();
         let walls = [boundaries.len(), fixed_discs];
-        check_materials(&self.materials, &self.pairs, walls, physics)?;
+        let has = [physics.friction, physics.cohesion];
+        check_materials(&self.materials, &self.pairs, walls, has)?;
         let is_listed = |number: &&u8| usize::from(**number) < self.materials.len();
         if let Some(number) = self.grains.materials.iter().find(|number| !is_listed(number)) {
             let allowed = "below the number of materials";
