@@ -14,8 +14,8 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// What it is where borders shear, a force drives a wall, or contacts resist rolling: by the method next to its own
-    /// that knows of them.
+    /// The settings of the solver. The method is `nsgs` if its own does not support borders that shear, a wall that a
+    /// force drives, or rolling friction, and the run has them.
     pub(super) fn among(
         &self,
         surroundings: &Surroundings,
