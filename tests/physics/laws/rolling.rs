@@ -212,6 +212,25 @@ fn every_step_of_a_pile_with_rolling_friction_closes_its_energy_budget() {
 }
 
 #[test]
+fn walls_that_turn_or_yield_and_borders_that_shear_take_part_in_the_energy_budget() {
+    for name in ["drum", "shear", "shear-periodic"] {
+        let mut scene = built_in(name).expect("a scene");
+        let without = after(&scene, 200);
+        scene.parameters.rolling_friction = ROLLING;
+        let mut run = start(&scene);
+        for _ in 0..200 {
+            let (after, off, scale) = balance(&mut run);
+            assert!(
+                off <= 1e-11 * scale,
+                "{name}, step {}: off by {off:e} of {scale:e}",
+                after.step
+            );
+        }
+        assert!(bits(&run) != bits(&without), "{name}: it matters");
+    }
+}
+
+#[test]
 fn a_pile_with_rolling_friction_is_the_same_on_one_and_two_threads() {
     let scene = pile(Method::Auto, ROLLING);
     let on = |threads: usize| {
