@@ -55,6 +55,9 @@ fn commands_of_documents_are_taken() {
     assert!(taken > 50, "{taken} commands");
 }
 
+/// The beginning of the command of a report that an example makes.
+const EXAMPLE: &str = "cargo run --release --example ";
+
 #[test]
 fn commands_of_reports_are_taken_and_name_no_folder_of_a_machine() {
     let mut reports = 0;
@@ -69,6 +72,11 @@ fn commands_of_reports_are_taken_and_name_no_folder_of_a_machine() {
                 format!("slump {}", rest[..end].trim_end_matches('.'))
             }
         };
+        if let Some(example) = command.strip_prefix(EXAMPLE) {
+            let name = example.split(' ').next().unwrap_or_default();
+            assert!(root().join(format!("examples/{name}.rs")).is_file(), "{command}");
+            continue;
+        }
         let words = command_in(&command).unwrap_or_else(|| panic!("{}: {command}", path.display()));
         let is_of_a_machine = words.iter().any(|word| word.starts_with('/'));
         assert!(!is_of_a_machine, "{}: {command}", path.display());
