@@ -20,6 +20,7 @@ mod ensemble;
 mod exports;
 mod file_names;
 mod film;
+mod glossary;
 pub mod lessons;
 mod link;
 mod notice;

@@ -6,6 +6,7 @@ use egui::{
     WidgetInfo,
 };
 
+use super::glossary::explained;
 use super::theme;
 use super::time_text::{millis, read_secs};
 use crate::error::Error;
@@ -134,7 +135,8 @@ fn number(
     let draft = ui.data(|data| data.get_temp::<String>(draft_id));
     let (mut edited, mut refused) = (None, None);
     ui.horizontal(|ui| {
-        ui.label(control.label).on_hover_text(control.hint);
+        let label = ui.label(control.label).on_hover_text(control.hint);
+        explained(label, control.symbol);
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let unit = if is_time(control) { "ms" } else { control.unit };
             if !unit.is_empty() {

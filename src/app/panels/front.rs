@@ -193,12 +193,13 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
         return;
     }
     let text = if !context.preferences.starts_again && !context.run.frame.at_start() {
-        LIVE
+        Some(LIVE)
     } else if context.run.slumps() && !context.touring {
         budget::what_to_try(&settings)
     } else {
-        return;
+        None
     };
+    let Some(text) = text else { return };
     ui.add(egui::Label::new(RichText::new(text).small().weak()).truncate()).on_hover_text(text);
 }
 

@@ -70,12 +70,6 @@ pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
             context.ask(Request::CopyLink);
         }
     });
-    if let Some(world) = context.run.world() {
-        let text = format!("State {}", world.snapshot.state_hash());
-        let hint = "A hash of where all grains are and how they move, bit by bit. Runs with the same one have come to the \
-                    same state; manifest.json has it as last_state.";
-        ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
-    }
 }
 
 fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery) {
