@@ -10,7 +10,7 @@ use super::axes::{plot_with_axes, with_least, with_room};
 use super::curve_pieces::pieces;
 use super::ensemble::Band;
 use super::glossary::explained;
-use super::time_text::clock_text;
+use super::number_text::clock_text;
 use crate::data::Observed;
 use crate::live::Curve;
 use crate::render::numbers::si_prefix;

@@ -5,7 +5,7 @@ use egui::{Button, ComboBox, RichText, Slider, Ui};
 use super::shown_settings::{FRONT_SETTINGS, shown_settings};
 use crate::app::context::PanelContext;
 use crate::app::lessons::lesson;
-use crate::app::time_text::clock_text;
+use crate::app::number_text::clock_text;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
 

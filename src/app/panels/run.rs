@@ -3,9 +3,10 @@
 use egui::{Align, Button, RichText, Ui};
 
 use super::gallery::Gallery;
+use super::shown_settings::FRONT_SETTINGS;
 use crate::app::context::{PanelContext, Request};
+use crate::app::number_text::clock_text;
 use crate::app::provenance::CHANGED;
-use crate::app::time_text::clock_text;
 use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
@@ -237,7 +238,7 @@ fn title(run: &PastRun, slumps: bool) -> String {
         1 => {
             let last = run.worlds[0].curve.last().filter(|_| slumps);
             let slump = last.map_or(String::new(), |row| format!(", slump {:.3}", row.slump));
-            settings_text(&controls[0].settings) + &slump
+            settings_text(&controls[0].settings, &FRONT_SETTINGS) + &slump
         }
         2 => format!("{first}; {}", title_among(&controls, 1)),
         count => format!("{count} worlds, {first}"),
