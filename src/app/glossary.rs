@@ -15,12 +15,15 @@ const COMMON: [&str; 2] = ["d", "stop"];
 
 /// Shows the definitions of all terms in a text to whoever points at the text.
 pub(super) fn explained(response: Response, text: &str) -> Response {
+    if !response.hovered() {
+        return response;
+    }
     let found = definitions_in(text);
     if found.is_empty() { response } else { response.on_hover_text(found) }
 }
 
 /// The definitions of all terms in a text, one per line; each term is defined once.
-pub(super) fn definitions_in(text: &str) -> String {
+fn definitions_in(text: &str) -> String {
     let mut found: Vec<&str> = Vec::new();
     for (term, definition) in terms() {
         if has_word(text, term) && !found.contains(&definition.as_str()) {
