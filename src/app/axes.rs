@@ -24,7 +24,8 @@ pub(super) fn bare_plot<'a>(
 }
 
 /// A plot whose x axis has the unit `x_unit`. `log` says which axes (x, y) are logarithmic. Numbers along a
-/// logarithmic axis with a unit are written in full.
+/// logarithmic axis with a unit are written in full. Times along a linear axis are in seconds and written in
+/// milliseconds.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -87,7 +88,8 @@ fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'
         if log {
             return format!("{}{unit}", 10f64.powf(mark.value));
         }
-        format!("{}{unit}", decimal(mark.value, mark.step_size))
+        let factor = if unit == " ms" { 1e3 } else { 1.0 };
+        format!("{}{unit}", decimal(factor * mark.value, factor * mark.step_size))
     })
 }
 

@@ -67,11 +67,11 @@ pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 /// Stronger piles need not.
 const WEAK: f64 = 50.0;
 
-/// Overlap, in mean diameters, up to which a contact is only found late. A grain that falls down the paper's pile (10 d) moves
-/// as far in a step of 1 ms. A smaller value warns of most runs with the default settings.
-pub(super) const USUAL_OVERLAP: f64 = 0.2;
+/// Longest fall from rest in one step without a warning, in mean diameters. A smaller value warns at the end of the slider
+/// of Δt.
+const LONGEST_FALL: f64 = 0.2;
 
-/// A warning of a step in which a grain at rest falls by more than [`USUAL_OVERLAP`].
+/// A warning of a step in which a grain at rest falls by more than [`LONGEST_FALL`].
 pub(super) fn too_long(
     settings: &Settings,
     surroundings: &Surroundings,
@@ -80,7 +80,7 @@ pub(super) fn too_long(
     let step_secs = settings.parameters.time_step_secs / f64::from(substeps.max(1));
     let fall = surroundings.gravity_magnitude * step_secs.powi(2) / surroundings.mean_diameter;
     let digits = usize::from(fall < 10.0);
-    (fall > USUAL_OVERLAP).then(|| {
+    (fall > LONGEST_FALL).then(|| {
         format!(
             "Δt is too long: in one step a grain at rest falls by {fall:.digits$} diameters, and contacts are found too \
              late. Choose a smaller Δt."
@@ -88,13 +88,24 @@ pub(super) fn too_long(
     })
 }
 
-/// A hint: something to try and its effect.
-pub(super) fn what_to_try(settings: &Settings) -> &'static str {
+/// Time step (s) from which the hint is a smaller one.
+const LONG_STEP_SECS: f64 = 5e-3;
+/// Touch tolerance, in mean diameters, above which the hint on Δt does not apply (`docs/theory.md`).
+const LARGE_TOLERANCE: f64 = 1e-4;
+
+/// A hint: something to try and its effect; none if no effect is known for these settings.
+pub(super) fn what_to_try(settings: &Settings) -> Option<&'static str> {
     let parameters = &settings.parameters;
     if parameters.bond == 0.0 {
-        return "At Bond 0 nothing sticks, and Δt hardly matters: drag Bond and see.";
+        return Some("At Bond 0 nothing sticks, and Δt hardly matters: drag Bond and see.");
     }
-    match settings.stepper {
+    Some(match settings.stepper {
+        Stepper::Moreau if parameters.touch_tolerance > LARGE_TOLERANCE => return None,
+        Stepper::Moreau
+            if parameters.bond <= WEAK && parameters.time_step_secs >= LONG_STEP_SECS =>
+        {
+            "A smaller Δt makes these grains stick less: drag it and see."
+        }
         Stepper::Moreau if parameters.bond <= WEAK => {
             "A larger Δt makes these grains stick better: drag it and see."
         }
@@ -109,7 +120,7 @@ pub(super) fn what_to_try(settings: &Settings) -> &'static str {
         Stepper::TgsSoft | Stepper::Dem => {
             "Here cohesion is an ordinary force at every Δt: drag Bond and see."
         }
-    }
+    })
 }
 
 #[cfg(test)]
@@ -175,11 +186,16 @@ mod tests {
             (Stepper::Dem, 20.0),
         ] {
             (settings.stepper, settings.parameters.bond) = (stepper, bond);
-            said.push(what_to_try(&settings));
+            said.push(what_to_try(&settings).expect("a hint"));
         }
         let larger = said.iter().filter(|text| text.contains("larger Δt makes these grains stick"));
         assert_eq!(larger.count(), 1, "{said:?}");
         said.dedup();
         assert_eq!(said.len(), 5);
+        (settings.stepper, settings.parameters.bond) = (Stepper::Moreau, 20.0);
+        let hint = what_to_try(&settings.over(LONG_STEP_SECS)).expect("a hint");
+        assert!(hint.contains("smaller Δt"), "{hint}");
+        settings.parameters.touch_tolerance = 0.01;
+        assert_eq!(what_to_try(&settings), None);
     }
 }

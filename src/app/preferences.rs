@@ -1,5 +1,6 @@
 //! Choices that the window remembers between starts.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -7,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::data_export::DataChoices;
 use super::page::Page;
 use super::plots::ChosenPlot;
+use super::predictions::Prediction;
 use crate::config::Config;
 #[cfg(feature = "window")]
 use crate::error::Result;
@@ -139,13 +141,15 @@ pub struct LessonPlace {
     pub at: usize,
     /// True if a window without options opens the lessons.
     pub on: bool,
+    /// The predictions, by lesson.
+    pub predictions: BTreeMap<usize, Prediction>,
     /// The user's choices before the lessons, restored after them.
     pub(super) before: Option<Choices>,
 }
 
 impl Default for LessonPlace {
     fn default() -> Self {
-        Self { at: 0, on: true, before: None }
+        Self { at: 0, on: true, predictions: BTreeMap::new(), before: None }
     }
 }
 
@@ -157,6 +161,8 @@ pub(super) struct Choices {
     pub full_speed: bool,
     pub starts_again: bool,
     pub page: Option<Page>,
+    /// True if the forces of bonds and contacts are drawn.
+    pub show_forces: bool,
 }
 
 impl Choices {
@@ -168,6 +174,7 @@ impl Choices {
             full_speed: std::mem::replace(&mut preferences.full_speed, self.full_speed),
             starts_again: std::mem::replace(&mut preferences.starts_again, self.starts_again),
             page: std::mem::replace(&mut preferences.page, self.page),
+            show_forces: std::mem::replace(&mut preferences.style.show_forces, self.show_forces),
         }
     }
 }
@@ -177,7 +184,8 @@ impl Preferences {
     pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
         let replaced = choices.swap(self);
         let before = self.lesson.before.take().unwrap_or(replaced);
-        self.lesson = LessonPlace { at, on: true, before: Some(before) };
+        let predictions = std::mem::take(&mut self.lesson.predictions);
+        self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
     }
 
     /// Restores the choices from before the lessons.

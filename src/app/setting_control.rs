@@ -6,8 +6,11 @@ use egui::{
     WidgetInfo,
 };
 
+use super::glossary::explained;
+use super::number_text::{millis, read_secs, written};
 use super::theme;
 use crate::error::Error;
+use crate::number::millis_text;
 use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
@@ -86,18 +89,28 @@ pub(super) fn called(about: &About) -> &'static str {
 
 /// Reason why a typed number is refused.
 fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -> Option<String> {
-    let refused =
-        |allowed| Some(format!("{} is {}, but must be {allowed}", called(about), written(number)));
+    let is_time = is_time(control);
+    let refused = |allowed| {
+        let found = shown(control, number);
+        let unit = if is_time { " ms" } else { "" };
+        Some(format!("{} is {found}{unit}, but must be {allowed}", called(about)))
+    };
     let whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
     if about.kind == Kind::Count && !whole {
         return refused("a whole number ≥ 0".to_owned());
     }
     if number > control.most {
-        return refused(format!("at most {}", written(control.most)));
+        return refused(match is_time {
+            true => format!("at most {}", millis_text(control.most)),
+            false => format!("at most {}", written(control.most)),
+        });
     }
     let mut tried = *settings;
     tried.set(about.name, of_number(about.kind, number)?);
     match tried.validate().err()? {
+        Error::Value { field, .. } if field == about.name && is_time => {
+            refused("above 0 ms".to_owned())
+        }
         Error::Value { field, allowed, .. } if field == about.name => refused(allowed),
         of_others => Some(of_others.to_string()),
     }
@@ -122,24 +135,29 @@ fn number(
     let draft = ui.data(|data| data.get_temp::<String>(draft_id));
     let (mut edited, mut refused) = (None, None);
     ui.horizontal(|ui| {
-        ui.label(control.label).on_hover_text(control.hint);
+        let label = ui.label(control.label).on_hover_text(control.hint);
+        explained(label, control.symbol);
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            if !control.unit.is_empty() {
-                ui.label(RichText::new(control.unit).weak());
+            let unit = if is_time(control) { "ms" } else { control.unit };
+            if !unit.is_empty() {
+                ui.label(RichText::new(unit).weak());
             }
             let id = ui.scope_id().with(("number", control.label));
             let is_refused = draft.is_some() && !ui.memory(|memory| memory.has_focus(id));
-            let mut text = draft.clone().unwrap_or_else(|| written(value));
+            let mut text = draft.clone().unwrap_or_else(|| shown(control, value));
             let response = field(ui, id, control.label, &mut text, is_refused);
             let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
             if response.double_clicked() && !response.changed() {
                 edited = Some(default);
-            } else if response.lost_focus() && (given_up || typed(&text, value, &refuse).is_ok()) {
-                edited = typed(&text, value, &refuse).ok().filter(|_| !given_up);
+            } else if response.lost_focus()
+                && (given_up || typed(control, &text, value, &refuse).is_ok())
+            {
+                edited = typed(control, &text, value, &refuse).ok().filter(|_| !given_up);
                 ui.data_mut(|data| data.remove::<String>(draft_id));
             } else if response.lost_focus() || response.changed() {
                 ui.data_mut(|data| data.insert_temp(draft_id, text));
-            } else if let Some(refusal) = typed(&text, value, &refuse).err().filter(|_| is_refused)
+            } else if let Some(refusal) =
+                typed(control, &text, value, &refuse).err().filter(|_| is_refused)
             {
                 refused = Some(refusal);
             }
@@ -187,10 +205,18 @@ fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: 
 }
 
 /// The typed number, or the reason why it is refused.
-fn typed(text: &str, value: f64, refuse: impl Fn(f64) -> Option<String>) -> Result<f64, String> {
+fn typed(
+    control: &Control,
+    text: &str,
+    value: f64,
+    refuse: impl Fn(f64) -> Option<String>,
+) -> Result<f64, String> {
     let text = text.trim();
-    let number = text.replace('−', "-").replace(',', ".").parse::<f64>();
-    let number = number.map_err(|_| format!("“{text}” is no number"))?;
+    let plain = text.replace('−', "-").replace(',', ".");
+    let number = match is_time(control) {
+        true => read_secs(&plain).ok_or_else(|| format!("“{text}” is not a time, such as 2 ms")),
+        false => plain.parse().map_err(|_| format!("“{text}” is not a number")),
+    }?;
     let refusal = if number == value { None } else { refuse(number) };
     refusal.map_or(Ok(number), Err)
 }
@@ -210,13 +236,14 @@ fn show_refusal(ui: &Ui, id: egui::Id, slider: Rect, refusal: String) {
         });
 }
 
-/// Formats a number as people type it: short, and exact when it is read back.
-pub(super) fn written(value: f64) -> String {
-    if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
+/// True if the window shows a setting in milliseconds, which is declared in seconds.
+fn is_time(control: &Control) -> bool {
+    control.unit == "s"
+}
+
+/// The value of a setting as its field shows it.
+fn shown(control: &Control, value: f64) -> String {
+    written(if is_time(control) { millis(value) } else { value })
 }
 
 fn rounded(value: f64) -> f64 {
@@ -229,13 +256,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_short_and_read_back() {
-        for (value, text) in
-            [(1e-3, "1e-3"), (2.5e-4, "2.5e-4"), (0.0, "0"), (100.0, "100"), (0.1, "0.1")]
-        {
-            assert_eq!(written(value), text);
-            assert_eq!(text.parse::<f64>(), Ok(value));
-        }
+    fn a_slider_gives_three_digits() {
         assert_eq!(rounded(1.23456e-4), 1.23e-4);
     }
 }

@@ -40,7 +40,11 @@ fn take_dropped_files(context: &Context, state: &mut AppState) {
 
 /// Acts on the keys of this frame.
 fn act_on_keys(context: &Context, state: &mut AppState) {
-    state.panels.help &= !context.input(|input| input.key_pressed(Key::Escape));
+    if context.input(|input| input.key_pressed(Key::Escape)) {
+        state.panels.help = false;
+        state.panels.trust.is_open = false;
+        state.panels.lesson_bar.shows_summary = false;
+    }
     // A focused field or slider uses letters and arrow keys itself.
     if context.egui_wants_keyboard_input() {
         return;
@@ -50,10 +54,13 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     if pressed(Modifiers::COMMAND, Key::Q) {
         context.send_viewport_cmd(egui::ViewportCommand::Close);
     }
-    if pressed(Modifiers::COMMAND, Key::Z)
-        && let Some(last) = state.run.frame.past.last()
-    {
-        state.run.live.send(Command::Return(last.number));
+    // The longer combination comes first: the shorter one also matches it.
+    let redo = [(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z), (Modifiers::COMMAND, Key::Y)];
+    if redo.into_iter().any(|(modifiers, key)| pressed(modifiers, key)) {
+        state.run.redo();
+    }
+    if pressed(Modifiers::COMMAND, Key::Z) {
+        state.run.undo();
     }
     if pressed(Modifiers::COMMAND, Key::S) {
         state.save_session(context);
@@ -89,6 +96,9 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
         if pressed(key) {
             front::change_pace(&mut state.split().0, is_faster);
         }
+    }
+    if pressed(Key::P) {
+        see::present(context);
     }
     if pressed(Key::H) {
         state.panels.help = !state.panels.help;

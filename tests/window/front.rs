@@ -56,7 +56,7 @@ fn the_ghost_is_at_the_simulated_time_of_the_run_and_says_what_it_is() {
         assert_eq!(ghost.time_step_secs, 1e-3);
         robot.harness.step();
         let texts = robot.painted_texts();
-        let label = format!("earlier run (grey): Δt 1 ms, at {:.3} s", ghost.time_secs);
+        let label = format!("earlier run (grey): Δt 1 ms, at {:.1} ms", 1e3 * ghost.time_secs);
         assert!(texts.iter().any(|text| text.text == label), "{label}");
     }
     // Beyond its end it stays there, and a run that comes back has all of its moments.
@@ -100,7 +100,7 @@ fn every_scene_starts_again_with_the_new_value() {
         let start = robot.bits();
         robot.take_steps(3);
         let time_step_secs = 0.5 * robot.settings().parameters.time_step_secs;
-        robot.type_number("Δt, time step", &time_step_secs.to_string());
+        robot.type_number("Δt, time step", &format!("{time_step_secs} s"));
         assert!(robot.state().run.frame.playing, "{}", info.name);
         robot.key(egui::Key::Space);
         let row = robot.observables();
@@ -230,7 +230,12 @@ fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
     config.source.duration = Some(0.05);
     let mut robot = Robot::open(config);
     robot.state_mut().ensemble.keep_in(cache.path().to_owned());
+    let scene = robot.state().controls["scene"];
     robot.click("Can I trust this? not known yet");
+    robot.frames(20);
+    assert!(robot.shows("Idle cores compute an error budget"));
+    let beside = robot.state().controls["scene"];
+    assert!(beside.width() < scene.width() - 300.0, "the answer covers nothing");
     let begun = Instant::now();
     while !robot.shows("mean(kinetic_energy) is ") {
         assert!(begun.elapsed() < Duration::from_secs(300), "waited in vain for the budget");
@@ -281,14 +286,14 @@ fn a_budget_is_computed_to_its_end_though_its_list_is_closed() {
 const BEYOND_REASON: [(&str, &str, &str); 3] = [
     ("Bond", "1e308", "Bond is 1e308, but must be at most 1e6"),
     ("μ, friction", "1e9", "μ is 1e9, but must be at most 1e6"),
-    ("Δt, time step", "5", "Δt is 5, but must be at most 1"),
+    ("Δt, time step", "5000", "Δt is 5000 ms, but must be at most 1000 ms"),
 ];
 
 #[test]
 fn a_time_step_that_is_too_long_is_warned_of_instead_of_praised() {
     let mut robot = Robot::open(pile());
     assert!(robot.shows("A larger Δt makes these grains stick better"), "the situation");
-    robot.type_number("Δt, time step", "1");
+    robot.type_number("Δt, time step", "1 s");
     robot.frames(2);
     assert!(robot.shows("Δt is too long: in one step a grain at rest falls by 19"));
     assert!(!robot.shows("stick better") && robot.shows("Can I trust this? no"));
@@ -329,4 +334,22 @@ fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
     let (failed, odd) = places(config);
     assert!(failed, "the situation");
     assert_eq!(odd, usual);
+}
+
+#[test]
+fn the_answer_on_trust_begins_with_a_sentence_and_closes_with_escape() {
+    let mut robot = Robot::open(Config::of_scene("thin-wall"));
+    robot.take_steps(40);
+    robot.harness.step();
+    robot.click("Can I trust this? no");
+    robot.frames(20);
+    let lost = robot.harness.query_all_by_label_contains("lost").next();
+    let sentence = lost.map(|node| node.rect()).expect("the reason");
+    let heading = robot.harness.query_all_by_label("Can I trust this? no");
+    let heading = heading.map(|node| node.rect().bottom()).fold(f32::INFINITY, f32::min);
+    assert!(sentence.top() - heading < 20.0, "the reason comes first: {heading}, {sentence:?}");
+    robot.key(egui::Key::Escape);
+    robot.frames(20);
+    assert!(!robot.shows("Nobody has computed") && !robot.shows("no error budget"));
+    assert_eq!(robot.state().preferences.page, None);
 }

@@ -2,9 +2,10 @@
 
 use egui::{Button, ComboBox, RichText, Slider, Ui};
 
-use super::grain::compact;
 use super::shown_settings::{FRONT_SETTINGS, shown_settings};
 use crate::app::context::PanelContext;
+use crate::app::lessons::lesson;
+use crate::app::number_text::clock_text;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
 
@@ -121,7 +122,7 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let end = context.run.frame.recorded_secs();
     let now = context.run.frame.time_secs();
     let duration = context.run.duration_secs();
-    let label = format!("{} / {} s", compact(now), compact(end));
+    let label = format!("{:.1} / {}", 1e3 * now, clock_text(end));
     let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
     ui.with_layout(from_the_right, |ui| {
         ui.allocate_ui_with_layout(egui::vec2(118.0, 20.0), from_the_right, |ui| {
@@ -147,8 +148,12 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some((before, start)) = context.run.wanted_and_start() else { return };
     let (index, mut settings) = (context.run.selected, before);
     let mut controls = shown_settings(context.run, &before);
-    controls.retain(|about| FRONT_SETTINGS.contains(&about.name));
-    let columns = ((ui.available_width() / LEAST_WIDTH) as usize).clamp(1, FRONT_SETTINGS.len());
+    let shown = match context.touring {
+        true => lesson(context.preferences.lesson.at).sliders,
+        false => &FRONT_SETTINGS,
+    };
+    controls.retain(|about| shown.contains(&about.name));
+    let columns = ((ui.available_width() / LEAST_WIDTH) as usize).clamp(1, shown.len());
     for row in controls.chunks(columns) {
         ui.columns(columns, |columns| {
             for (ui, about) in columns.iter_mut().zip(row) {
@@ -188,12 +193,13 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
         return;
     }
     let text = if !context.preferences.starts_again && !context.run.frame.at_start() {
-        LIVE
+        Some(LIVE)
     } else if context.run.slumps() && !context.touring {
         budget::what_to_try(&settings)
     } else {
-        return;
+        None
     };
+    let Some(text) = text else { return };
     ui.add(egui::Label::new(RichText::new(text).small().weak()).truncate()).on_hover_text(text);
 }
 

@@ -2,17 +2,19 @@
 
 use egui::{Align2, RichText, Ui};
 
-const KEYS: [(&str, &str); 15] = [
+const KEYS: [(&str, &str); 17] = [
     ("space", "release, pause, resume"),
     ("→  ←", "one step on, one step back"),
     ("R", "start again; this run is kept"),
-    ("Ctrl Z", "back to the run that was there before"),
+    ("Ctrl Z", "undo: back to the run before"),
+    ("Ctrl Y", "redo: on to the run after, as with Ctrl Shift Z"),
     ("[  ]", "slower, faster"),
     ("B", "hide the bars: the scene fills the window"),
     ("F", "show the whole scene"),
     ("S", "save a picture of the scene"),
     ("Ctrl S", "save the session: worlds, record and window"),
     ("Ctrl V", "open a copied link"),
+    ("P", "present: everything twice as large, for a projector"),
     ("H", "this help"),
     ("Tab", "next control"),
     ("Ctrl +  −", "larger and smaller window contents"),

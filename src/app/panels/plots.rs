@@ -6,13 +6,15 @@ use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
 use crate::app::exports::write_table;
 use crate::app::file_names::free_path;
+use crate::app::glossary::explained;
 use crate::app::plots::{LEAST_WIDTH, PlotData, WorldCurve, draw, draw_with_key};
 use crate::app::preferences::Preferences;
 use crate::app::theme;
 use crate::app::time_step_figure::TimeStepFigure;
-use crate::app::titles::{millis_text, title_against};
+use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
+use crate::number::millis_text;
 use crate::output::write_file;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 use crate::study::png::write_png;
@@ -144,7 +146,8 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let own = context.run.slump_text(context.run.selected);
         let text = effect(context).or_else(|| Some(format!("{own}; {}", said?)));
         if let Some(text) = text {
-            ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
+            let label = ui.add(egui::Label::new(&text).truncate()).on_hover_text(hint);
+            explained(label, &text);
         }
     });
 }

@@ -3,15 +3,18 @@
 use egui::{Align, Button, RichText, Ui};
 
 use super::gallery::Gallery;
-use super::grain::compact;
+use super::shown_settings::FRONT_SETTINGS;
 use crate::app::context::{PanelContext, Request};
+use crate::app::number_text::clock_text;
 use crate::app::provenance::CHANGED;
-use crate::app::titles::title_among;
+use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
-use crate::scene::{Deposition, NewPile, SCENES};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 
+/// Scenes that are made to break methods are for experts (the page Law, solver).
+const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiments];
 /// Largest number of grains that the panel offers. The command line takes more.
 const MOST_GRAINS: usize = 20_000;
 
@@ -68,12 +71,6 @@ pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
             context.ask(Request::CopyLink);
         }
     });
-    if let Some(world) = context.run.world() {
-        let text = format!("State {}", world.snapshot.state_hash());
-        let hint = "A hash of where all grains are and how they move, bit by bit. Runs with the same one have come to the \
-                    same state; manifest.json has it as last_state.";
-        ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
-    }
 }
 
 fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery) {
@@ -84,7 +81,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
             "To open a TOML scene, a CSV file of discs or a saved run, drop it on the window.",
         );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            let list = gallery.show(ui, context, &current).labelled_by(label.id);
+            let list = gallery.show(ui, context, &current, &SCENE_GROUPS).labelled_by(label.id);
             context.note_control("scenes", list.rect);
         });
     });
@@ -180,8 +177,8 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     ui.horizontal(|ui| {
         ui.label("Earlier runs").on_hover_text(
-            "Runs that were replaced by a reset, by other worlds, or by a change at an earlier moment. The last \
-             four are kept.",
+            "The runs of this session: Ctrl Z goes back by one run, Ctrl Y goes on again. A click brings back a run \
+             with its settings.",
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.checkbox(&mut context.preferences.ghost, "Ghost")
@@ -198,14 +195,11 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 name_field(ui, context.run, Some(run.number), &run.name);
-                let title = title(run);
+                let title = title(run, context.run.slumps());
                 let name = if run.name.is_empty() { &title } else { &run.name };
-                let text = format!("↶ {name}, {} s", compact(run.recorded_secs));
+                let text = format!("{} {name}", if run.is_undone { "↷" } else { "↶" });
                 let back = ui.add(Button::new(RichText::new(text).size(11.5)).truncate());
-                let hint = format!(
-                    "Back to it (the last: Ctrl Z): {title}, {} s",
-                    compact(run.recorded_secs)
-                );
+                let hint = format!("Bring back {title}, {}", clock_text(run.recorded_secs));
                 if back.on_hover_text(hint).clicked() {
                     context.run.live.send(Command::Return(run.number));
                 }
@@ -235,12 +229,17 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
-/// Title of an earlier run, from its worlds.
-fn title(run: &PastRun) -> String {
+/// The settings of an earlier run: of one world all sliders and the slump, of several worlds the differences.
+fn title(run: &PastRun, slumps: bool) -> String {
     let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
     let first = title_among(&controls, 0);
     match controls.len() {
-        0 | 1 => first,
+        0 => String::new(),
+        1 => {
+            let last = run.worlds[0].curve.last().filter(|_| slumps);
+            let slump = last.map_or(String::new(), |row| format!(", slump {:.3}", row.slump));
+            settings_text(&controls[0].settings, &FRONT_SETTINGS) + &slump
+        }
         2 => format!("{first}; {}", title_among(&controls, 1)),
         count => format!("{count} worlds, {first}"),
     }

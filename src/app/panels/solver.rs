@@ -1,12 +1,13 @@
 //! Panel: the solver, and the result of the last step.
 
-use egui::{CollapsingHeader, ComboBox, RichText, Ui};
+use egui::{ComboBox, RichText, Ui};
 
 use super::grain::compact;
 use crate::app::budget::{BUDGETS, Budget};
 use crate::app::watched_run::WatchedRun;
 use crate::app::{setting_control, theme};
 use crate::live::WorldFrame;
+use crate::number::millis_text;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
 use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
@@ -14,24 +15,32 @@ use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
-    let Some((before, start)) = run.wanted_and_start() else { return };
+    let Some(before) = run.wanted_settings() else { return };
     let mut settings = before;
     if before.stepper.uses_method()
         && let Some(world) = run.world()
     {
         budget_buttons(ui, &mut settings, &world.snapshot.surroundings);
     }
+    if settings != before {
+        run.change(index, settings);
+    }
     readings(ui, run);
-    CollapsingHeader::new("Expert").show_unindented(ui, |ui| {
-        expert(ui, &mut settings, start.settings(), start.physics().friction);
-    });
+}
+
+/// Settings that few need to change.
+pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
+    let index = run.selected;
+    let Some((before, start)) = run.wanted_and_start() else { return };
+    let mut settings = before;
+    expert_controls(ui, &mut settings, start.settings(), start.physics().friction);
     if settings != before {
         run.change(index, settings);
     }
 }
 
 /// Shows controls that few users need.
-fn expert(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
+fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
     let stepper = settings.stepper;
     if stepper.uses_method() {
         method_controls(ui, settings, start);
@@ -178,13 +187,13 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
             let substeps = world.substeps.to_string();
             reading(ui, "substeps", substeps, "Substeps of the next step.");
             let substep_secs = settings.parameters.time_step_secs / f64::from(world.substeps);
-            reading(ui, "substep", format!("{substep_secs:.1e} s"), "Length of a substep.");
+            reading(ui, "substep", millis_text(substep_secs), "Length of a substep.");
             ui.end_row();
         }
         if let Some(critical_secs) = world.critical_time_step_secs {
             let hint = "Longest substep that is certainly stable. With slightly longer substeps crowded grains \
                         blow up.";
-            reading(ui, "critical", format!("{critical_secs:.1e} s"), hint);
+            reading(ui, "critical", millis_text(critical_secs), hint);
             ui.end_row();
         }
     });

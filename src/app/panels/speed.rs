@@ -9,6 +9,7 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 use super::grain::compact;
 use crate::Instant;
 use crate::app::axes::{plot_with_axes, with_least, with_room};
+use crate::app::number_text::clock_text;
 use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Reporter, Work, outcome_of_ended};
@@ -175,8 +176,10 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     draw(ui, curves, now(run, race));
     legend(ui, curves);
     let time_secs = race.time_secs;
-    let text =
-        format!("The step after t = {time_secs:.4} s, measured here; ◆ is the present solver.");
+    let text = format!(
+        "The step after t = {}, measured here; ◆ is the present solver.",
+        clock_text(time_secs)
+    );
     ui.label(RichText::new(text).small().weak());
 }
 
