@@ -343,8 +343,11 @@ fn the_answer_on_trust_begins_with_a_sentence_and_closes_with_escape() {
     robot.harness.step();
     robot.click("Can I trust this? no");
     robot.frames(20);
-    let lost = robot.harness.query_all_by_label_contains("lost").next();
-    let sentence = lost.map(|node| node.rect()).expect("the reason");
+    let alarms = &robot.world().alarms;
+    let lost = alarms.iter().find(|alarm| alarm.kind == AlarmKind::GrainLost).expect("an alarm");
+    let sentence = robot.harness.query_all_by_label(&lost.text).map(|node| node.rect());
+    let sentence = sentence.reduce(|one, other| if one.top() < other.top() { one } else { other });
+    let sentence = sentence.expect("the reason");
     let heading = robot.harness.query_all_by_label("Can I trust this? no");
     let heading = heading.map(|node| node.rect().bottom()).fold(f32::INFINITY, f32::min);
     assert!(sentence.top() - heading < 20.0, "the reason comes first: {heading}, {sentence:?}");

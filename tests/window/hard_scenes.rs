@@ -38,6 +38,8 @@ fn scenes_that_break_methods_are_for_experts() {
         if page == "Law, solver" {
             robot.click("Expert");
         }
+        robot.harness.get_by_role_and_label(egui::Role::ComboBox, list).scroll_to_me();
+        robot.frames(10);
         robot.harness.get_by_role_and_label(egui::Role::ComboBox, list).click();
         robot.frames(5);
         let found = ["silo", "newtons-cradle"].map(|name| robot.shows(name));
