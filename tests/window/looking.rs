@@ -386,3 +386,15 @@ fn a_world_computes_what_it_computes_alone() {
     assert_eq!(worlds[1].snapshot.grains, alone);
     assert_ne!(worlds[0].snapshot.grains, alone);
 }
+
+#[test]
+fn an_experiment_shows_its_own_quantity_in_place_of_the_errors_of_the_solver() {
+    let mut robot = Robot::open(Config::of_scene("drum"));
+    robot.take_steps(3);
+    robot.frames(2);
+    assert!(robot.shows("angle of the surface (degrees)"));
+    assert!(robot.shows("kinetic energy") && !robot.shows("error of velocities"));
+    robot.load(pile());
+    robot.frames(2);
+    assert!(!robot.shows("angle of the surface") && robot.shows("slump Δy"));
+}
