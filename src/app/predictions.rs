@@ -114,7 +114,8 @@ pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn ten_sweeps(rows: &[Observables]) -> Option<(usize, String)> {
     let [few, solved] = rows else { return None };
     let text = format!(
-        "The largest overlap was {:.1} % of a diameter with ten sweeps per step, and {:.1} % with solved steps.",
+        "At the end the largest overlap was {:.1} % of a diameter with ten sweeps per step, and {:.1} % with solved \
+         steps.",
         100.0 * few.max_overlap,
         100.0 * solved.max_overlap
     );

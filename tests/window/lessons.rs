@@ -275,7 +275,8 @@ fn a_lesson_asks_first_and_then_says_if_the_prediction_was_right() {
     robot.until("the end of the lesson", |state| !state.run.frame.playing);
     robot.frames(2);
     let overlap = 100.0 * robot.of_worlds(|world| world.snapshot.observables.max_overlap)[0];
-    let verdict = format!("✓ You said: no. The largest overlap was {overlap:.1} % of a diameter");
+    let verdict =
+        format!("✓ You said: no. At the end the largest overlap was {overlap:.1} % of a diameter");
     assert!(robot.shows(&verdict), "{verdict}");
     // A moment before the end leaves the verdict; the next run asks again.
     robot.seek(0.01);
