@@ -76,7 +76,7 @@ fn long_names_do_not_widen_the_panel() {
     robot.click("Compare");
     let before = robot.state().controls["Pile"].left();
     let line_ups =
-        ["Two laws", "Law, solver", "Expert", "Methods", "Friction", "Steppers", "Compare"];
+        ["Two laws", "Law, solver", "Expert", "Methods", "Friction models", "Steppers", "Compare"];
     for line_up in line_ups {
         robot.click(line_up);
         robot.frames(10);
@@ -360,7 +360,7 @@ fn two_laws_stand_side_by_side() {
 #[test]
 fn models_of_friction_stand_side_by_side() {
     let mut robot = Robot::open(pile());
-    robot.clicks(&["Law, solver", "Expert", "Friction"]);
+    robot.clicks(&["Law, solver", "Expert", "Friction models"]);
     robot.key(egui::Key::ArrowRight);
     let solved = robot.of_worlds(|world| {
         let solver = world.controls.settings.solver;

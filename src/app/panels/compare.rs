@@ -99,7 +99,7 @@ const METHOD_LINE_UPS: [LineUp; 3] = [
         },
     },
     LineUp {
-        name: "Friction",
+        name: "Friction models",
         hint: "Every model of friction, and tresca solved four times a step, by nsgs.",
         worlds: |base| {
             let base = stepped(base, Stepper::Moreau);
