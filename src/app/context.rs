@@ -7,6 +7,7 @@ use egui::Rect;
 
 use super::camera::SceneCamera;
 use super::ensemble::Ensemble;
+use super::experiment_plot::ExperimentSeries;
 use super::exports::{Exports, Printers};
 use super::notice::Notice;
 use super::preferences::Preferences;
@@ -42,6 +43,7 @@ pub(crate) struct PanelContext<'a> {
     pub preferences: &'a mut Preferences,
     pub camera: &'a mut SceneCamera,
     pub ensemble: &'a Ensemble,
+    pub experiment: &'a ExperimentSeries,
     pub exports: &'a mut Exports,
     pub notice: &'a mut Option<Notice>,
     pub controls: &'a mut BTreeMap<String, Rect>,

@@ -158,7 +158,6 @@ pub const LESSONS: [Lesson; 7] = [
                 _ => &[],
             }
         },
-        sliders: &["dt"],
         ..PILE
     },
     Lesson {

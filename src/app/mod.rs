@@ -17,6 +17,7 @@ mod context;
 mod curve_pieces;
 mod data_export;
 mod ensemble;
+mod experiment_plot;
 mod exports;
 mod file_names;
 mod film;

@@ -28,8 +28,8 @@ pub struct Prediction {
     pub was_right: Option<bool>,
 }
 
-/// Difference of slumps up to which two piles slump alike: one pile twice, with grains displaced by rounding, differs by
-/// up to this much.
+/// Difference of slumps up to which two piles slump alike: an eighth of the axis of the plot, hardly visible. A smaller
+/// value calls nearly every pair of piles different.
 const ALIKE: f64 = 0.05;
 /// Overlap above which a disc does not carry its load, in mean diameters: the limit of `slump stability`.
 const SQUEEZED: f64 = 0.01;
@@ -114,7 +114,8 @@ pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn ten_sweeps(rows: &[Observables]) -> Option<(usize, String)> {
     let [few, solved] = rows else { return None };
     let text = format!(
-        "The largest overlap was {:.1} % of a diameter with ten sweeps per step, and {:.1} % with solved steps.",
+        "At the end the largest overlap was {:.1} % of a diameter with ten sweeps per step, and {:.1} % with solved \
+         steps.",
         100.0 * few.max_overlap,
         100.0 * solved.max_overlap
     );

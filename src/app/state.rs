@@ -11,6 +11,7 @@ use egui::{Context, Rect};
 use super::camera::SceneCamera;
 use super::context::{PanelContext, Request};
 use super::ensemble::Ensemble;
+use super::experiment_plot::ExperimentSeries;
 use super::exports::Exports;
 use super::lessons::LESSONS;
 use super::notice::Notice;
@@ -35,6 +36,8 @@ pub struct AppState {
     pub touring: bool,
     /// Runs of other initial states with the present settings.
     pub ensemble: Ensemble,
+    /// The quantity of an experiment over time.
+    pub(crate) experiment: ExperimentSeries,
     /// Places of controls, points, for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
     /// The panels and their own state.
@@ -65,6 +68,7 @@ impl AppState {
             camera: SceneCamera::default(),
             touring: false,
             ensemble: Ensemble::new(),
+            experiment: ExperimentSeries::default(),
             controls: BTreeMap::new(),
             panels: Panels::default(),
             restart_graphics: false,
@@ -87,6 +91,7 @@ impl AppState {
             preferences: &mut self.preferences,
             camera: &mut self.camera,
             ensemble: &self.ensemble,
+            experiment: &self.experiment,
             exports: &mut self.exports,
             notice: &mut self.notice,
             controls: &mut self.controls,
@@ -137,6 +142,7 @@ impl AppState {
             self.preferences.scene = self.run.config().with_settings(&settings);
         }
         self.panels.scene.follow(&self.run);
+        self.experiment.follow(&self.run.frame);
         if let Some(notice) = self.exports.follow(context) {
             self.notice = Some(notice);
         }

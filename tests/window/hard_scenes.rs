@@ -2,6 +2,7 @@
 
 use crate::robot::*;
 use slump::solver::SolverSettings;
+use slump::study::stability::Challenge;
 
 /// Solves the scene by ten sweeps per step, and by Newton's method.
 #[test]
@@ -38,6 +39,8 @@ fn scenes_that_break_methods_are_for_experts() {
         if page == "Law, solver" {
             robot.click("Expert");
         }
+        robot.harness.get_by_role_and_label(egui::Role::ComboBox, list).scroll_to_me();
+        robot.frames(10);
         robot.harness.get_by_role_and_label(egui::Role::ComboBox, list).click();
         robot.frames(5);
         let found = ["silo", "newtons-cradle"].map(|name| robot.shows(name));
@@ -47,4 +50,13 @@ fn scenes_that_break_methods_are_for_experts() {
     };
     assert_eq!(gallery(&mut robot, "Pile", "Scene"), [true, false]);
     assert_eq!(gallery(&mut robot, "Law, solver", "Scenes made to break methods"), [false, true]);
+}
+
+#[test]
+fn every_scene_that_is_made_to_break_methods_has_a_right_answer() {
+    for info in SCENES {
+        let challenge = Challenge::seen_in(info.name);
+        assert_eq!(challenge.is_some(), info.group == SceneGroup::Stability, "{}", info.name);
+        assert!(challenge.is_none_or(|it| it.right_answer().is_some()), "{}", info.name);
+    }
 }

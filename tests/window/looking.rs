@@ -76,7 +76,7 @@ fn long_names_do_not_widen_the_panel() {
     robot.click("Compare");
     let before = robot.state().controls["Pile"].left();
     let line_ups =
-        ["Two laws", "Law, solver", "Expert", "Solvers", "Friction", "Steppers", "Compare"];
+        ["Two laws", "Law, solver", "Expert", "Solvers", "Friction models", "Steppers", "Compare"];
     for line_up in line_ups {
         robot.click(line_up);
         robot.frames(10);
@@ -360,7 +360,7 @@ fn two_laws_stand_side_by_side() {
 #[test]
 fn models_of_friction_stand_side_by_side() {
     let mut robot = Robot::open(pile());
-    robot.clicks(&["Law, solver", "Expert", "Friction"]);
+    robot.clicks(&["Law, solver", "Expert", "Friction models"]);
     robot.key(egui::Key::ArrowRight);
     let solved = robot.of_worlds(|world| {
         let solver = world.controls.settings.solver;
@@ -385,4 +385,16 @@ fn a_world_computes_what_it_computes_alone() {
     let worlds = &robot.state().run.frame.worlds;
     assert_eq!(worlds[1].snapshot.grains, alone);
     assert_ne!(worlds[0].snapshot.grains, alone);
+}
+
+#[test]
+fn an_experiment_shows_its_own_quantity_in_place_of_the_errors_of_the_solver() {
+    let mut robot = Robot::open(Config::of_scene("drum"));
+    robot.take_steps(3);
+    robot.frames(2);
+    assert!(robot.shows("angle of the surface (degrees)"));
+    assert!(robot.shows("kinetic energy") && !robot.shows("error of velocities"));
+    robot.load(pile());
+    robot.frames(2);
+    assert!(!robot.shows("angle of the surface") && robot.shows("slump Δy"));
 }

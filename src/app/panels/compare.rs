@@ -99,7 +99,7 @@ const METHOD_LINE_UPS: [LineUp; 3] = [
         },
     },
     LineUp {
-        name: "Friction",
+        name: "Friction models",
         hint: "All friction models, solved by nsgs, and tresca with four solves per step.",
         worlds: |base| {
             let base = stepped(base, Stepper::Moreau);

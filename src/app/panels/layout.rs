@@ -30,12 +30,18 @@ pub struct Panels {
     /// True while the list of keys is open.
     pub(crate) help: bool,
     pub(crate) trust: TrustPanel,
+    /// The page that was open in the frame before.
+    page: Option<Page>,
 }
 
 impl Panels {
     /// Draws all panels.
     pub(crate) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         fill(ui, ui.max_rect(), ui.visuals().panel_fill);
+        // A page that is opened takes the place of the answer on trust.
+        let page = context.preferences.page;
+        self.trust.is_open &= page.is_none() || page == self.page;
+        self.page = page;
         let has_page = (context.preferences.page.is_some() || self.trust.is_open)
             && !context.preferences.folded;
         if has_page && ui.max_rect().width() < NARROW {

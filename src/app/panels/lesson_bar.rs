@@ -36,7 +36,9 @@ impl LessonBar {
         } else if self.has_other_worlds(context.run, &LESSONS[at]) {
             ui.label(OTHER_WORLDS);
         } else if let Some(question) = &LESSONS[at].question {
-            prediction(ui, context, at, question);
+            // Before the lesson is loaded, the frame is of another run.
+            let is_there = context.run.frame.loads > self.loads_before;
+            prediction(ui, context, at, (question, is_there));
         } else {
             explained(ui.label(LESSONS[at].watch), LESSONS[at].watch);
         }
@@ -102,8 +104,13 @@ impl LessonBar {
 }
 
 /// The question of a lesson and its two answers; once the run has ended, its result instead.
-fn prediction(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize, question: &Question) {
-    let rows = (question.rows)(&context.run.frame);
+fn prediction(
+    ui: &mut Ui,
+    context: &mut PanelContext<'_>,
+    at: usize,
+    (question, is_there): (&Question, bool),
+) {
+    let rows = (question.rows)(&context.run.frame).filter(|_| is_there);
     let result = rows.and_then(|rows| (question.result)(&rows));
     let predicted = context.preferences.lesson.predictions.get_mut(&at);
     if let Some((right, text)) = result {
@@ -121,8 +128,9 @@ fn prediction(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize, question: 
         return;
     }
     explained(ui.label(LESSONS[at].watch), LESSONS[at].watch);
-    let waits = context.run.frame.at_start() && !context.run.frame.playing;
-    let mut answer = predicted.map(|predicted| predicted.answer);
+    let waits = is_there && context.run.frame.at_start() && !context.run.frame.playing;
+    let answer = predicted.map(|predicted| predicted.answer);
+    let mut clicked = None;
     let mut buttons = Rect::NOTHING;
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(question.text).strong());
@@ -132,12 +140,12 @@ fn prediction(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize, question: 
             let button = ui.add_enabled(waits, button).on_hover_text(hint);
             buttons |= button.rect;
             if button.clicked() {
-                answer = Some(index);
+                clicked = Some(index);
             }
         }
     });
     context.note_control("answers", buttons);
-    if let Some(answer) = answer.filter(|_| waits) {
+    if let Some(answer) = clicked {
         let prediction = Prediction { answer, was_right: None };
         context.preferences.lesson.predictions.insert(at, prediction);
     }

@@ -4,6 +4,7 @@ use egui::{Color32, RichText, Ui};
 
 use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
+use crate::app::experiment_plot::has_quantity;
 use crate::app::exports::write_table;
 use crate::app::file_names::free_path;
 use crate::app::glossary::explained;
@@ -24,6 +25,12 @@ const FIGURE_PART: f32 = 0.4;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let width = ui.available_width();
+    if has_quantity(&context.run.frame) {
+        return ui.columns(2, |columns| {
+            context.experiment.draw(&mut columns[0], &context.run.frame);
+            curves(&mut columns[1], context);
+        });
+    }
     let Some(figure) = figure(ui, context).filter(|_| width > 4.0 * LEAST_WIDTH) else {
         return curves(ui, context);
     };
@@ -126,7 +133,12 @@ fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Obs
         means_something(run, quantity)
             && preferences.quantities.iter().any(|name| name == quantity.name)
     };
-    is_chosen(quantity) || (means_something(run, quantity) && !QUANTITIES.iter().any(is_chosen))
+    // The quantity of an experiment leaves room for one plot.
+    let is_default = match has_quantity(&run.frame) {
+        true => quantity.name == "energy",
+        false => means_something(run, quantity),
+    };
+    is_chosen(quantity) || (is_default && !QUANTITIES.iter().any(is_chosen))
 }
 
 /// True if a quantity has a meaning in this scene.

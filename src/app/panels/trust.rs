@@ -145,7 +145,7 @@ impl TrustPanel {
             });
         });
         ScrollArea::vertical().id_salt("trust").auto_shrink([false, false]).show(ui, |ui| {
-            ui.label(RichText::new(reason).strong());
+            ui.label(RichText::new(&reason).strong());
             let answer = self.of_budget(context.run);
             if let Some(answer) = answer.as_ref().filter(|answer| !answer.effects.is_empty()) {
                 bars(ui, answer);
@@ -161,7 +161,8 @@ impl TrustPanel {
                 false => theme::warning(ui.visuals().dark_mode),
             };
             let warnings = context.run.world().and_then(warning);
-            for alarm in warnings.into_iter().chain(alarms(context.run)) {
+            let others = warnings.into_iter().chain(alarms(context.run));
+            for alarm in others.filter(|alarm| *alarm != reason) {
                 ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
             }
             if let (Some(said), Some(world)) = (

@@ -1,0 +1,221 @@
+//! The quantity that an experiment is about, over simulated time: a value of each frame that the window has shown.
+
+use std::collections::BTreeMap;
+
+use egui::{Color32, Label, RichText, Ui};
+use egui_plot::{Line, VLine};
+use glam::DVec2;
+
+use super::axes::{plot_with_axes, with_least, with_room};
+use super::theme;
+use crate::live::{LiveFrame, LiveStart};
+use crate::scene::Scene;
+use crate::sim::Snapshot;
+use crate::world::MotionCourse;
+
+/// The quantity of an experiment.
+struct ExperimentQuantity {
+    scene: &'static str,
+    /// Title of the plot, with the unit.
+    title: &'static str,
+    /// Value of a moment, given the start.
+    of: fn(&Scene, &Snapshot) -> f64,
+    /// True if the plot shows the change of the value per second.
+    is_rate: bool,
+}
+
+const fn quantity(
+    scene: &'static str,
+    title: &'static str,
+    of: fn(&Scene, &Snapshot) -> f64,
+) -> ExperimentQuantity {
+    ExperimentQuantity { scene, title, of, is_rate: false }
+}
+
+const QUANTITIES: [ExperimentQuantity; 8] = [
+    quantity("drum", "angle of the surface (degrees)", |_, now| surface_degrees(now)),
+    quantity("shear", "shear stress / normal stress", |_, now| shear_ratio(now)),
+    quantity("shear-periodic", "shear stress / normal stress", |_, now| shear_ratio(now)),
+    quantity("biaxial", "stress ratio σyy/σxx", |_, now| {
+        let [xx, _, yy] = stress(now);
+        yy / xx
+    }),
+    quantity("vibrated", "height of the large grain (mean diameters)", |scene, now| {
+        let largest = now.grains.iter().max_by(|one, other| one.radius.total_cmp(&other.radius));
+        largest.map_or(f64::NAN, |grain| grain.position.y / scene.mean_diameter)
+    }),
+    quantity("collapse", "run-out (L − L₀)/L₀", |scene, now| {
+        let before = half_width(scene.grains.iter().map(|grain| grain.position.x));
+        half_width(now.grains.iter().map(|grain| grain.position.x)) / before - 1.0
+    }),
+    ExperimentQuantity {
+        is_rate: true,
+        ..quantity("silo", "grains per second through the orifice", |_, now| {
+            now.grains.iter().filter(|grain| grain.position.y < 0.0).count() as f64
+        })
+    },
+    quantity("incline", "mean speed of the grains (mm/s)", |_, now| {
+        let speeds = now.grains.iter().map(|grain| grain.velocity.length());
+        1e3 * speeds.sum::<f64>() / now.grains.len().max(1) as f64
+    }),
+];
+
+/// Angle of the filling of a drum whose axis is at the origin: the centre of mass of a filling with a plane surface lies
+/// on the line through the axis at right angles to the surface.
+fn surface_degrees(now: &Snapshot) -> f64 {
+    let weighted = now.grains.iter().map(|grain| grain.radius.powi(2) * grain.position);
+    let centre: DVec2 = weighted.sum();
+    centre.x.atan2(-centre.y).to_degrees().abs()
+}
+
+fn half_width(places: impl Iterator<Item = f64>) -> f64 {
+    let ends =
+        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    0.5 * (ends[1] - ends[0])
+}
+
+fn shear_ratio(now: &Snapshot) -> f64 {
+    let [_, xy, yy] = stress(now);
+    xy.abs() / yy
+}
+
+/// σxx, mean of σxy and σyx, and σyy of all contacts, times the area, J (Love and Weber, compression positive).
+fn stress(now: &Snapshot) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for contact in &now.contacts {
+        let branch = contact.from - contact.to;
+        let normal = branch.normalize_or_zero();
+        let force = contact.normal_force * normal + contact.tangential_force * normal.perp();
+        sum[0] += force.x * branch.x;
+        sum[1] += 0.5 * (force.x * branch.y + force.y * branch.x);
+        sum[2] += force.y * branch.y;
+    }
+    sum
+}
+
+/// True if the scene has a quantity of its own.
+pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
+    frame.start.as_ref().is_some_and(|start| quantity_of(start).is_some())
+}
+
+fn quantity_of(start: &LiveStart) -> Option<&'static ExperimentQuantity> {
+    QUANTITIES.iter().find(|quantity| quantity.scene == start.scene.name)
+}
+
+/// Times at which walls change their velocity, s.
+pub(super) fn events(scene: &Scene) -> Vec<f64> {
+    let mut times: Vec<f64> = Vec::new();
+    for motion in &scene.motions {
+        if let Some(
+            MotionCourse::Table { times_secs, .. } | MotionCourse::AngleTable { times_secs, .. },
+        ) = &motion.course
+        {
+            times.extend(times_secs.iter().filter(|&&at| at > 0.0 && at < scene.duration_secs));
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// Simulated time over which a rate is taken, s.
+const RATE_SECS: f64 = 0.1;
+/// Most points that are drawn of a curve.
+const MOST_POINTS: usize = 2_000;
+
+/// Values of the moments that were shown of each world, by step.
+#[derive(Debug, Default)]
+pub(crate) struct ExperimentSeries {
+    /// Numbers of the load and of the last earlier run, and the number of worlds: other values begin again.
+    run: (u64, Option<u64>, usize),
+    worlds: Vec<BTreeMap<u64, [f64; 2]>>,
+}
+
+impl ExperimentSeries {
+    /// Adds the moments of a frame.
+    pub(super) fn follow(&mut self, frame: &LiveFrame) {
+        let quantity = frame.start.as_ref().and_then(|start| Some((start, quantity_of(start)?)));
+        let Some((start, quantity)) = quantity else { return *self = Self::default() };
+        let run = (frame.loads, frame.past.last().map(|past| past.number), frame.worlds.len());
+        if self.run != run {
+            *self = Self { run, worlds: vec![BTreeMap::new(); frame.worlds.len()] };
+        }
+        for (values, world) in self.worlds.iter_mut().zip(&frame.worlds) {
+            let row = &world.snapshot.observables;
+            if let Some(last) = world.curve.last() {
+                values.split_off(&(last.step + 1));
+            }
+            if !values.contains_key(&row.step) {
+                let value = (quantity.of)(&start.scene, &world.snapshot);
+                values.insert(row.step, [row.time_secs, value]);
+            }
+        }
+    }
+
+    /// The points of a world, as its plot shows them.
+    fn points(&self, start: &LiveStart, world: usize) -> Vec<[f64; 2]> {
+        let Some(values) = self.worlds.get(world) else { return Vec::new() };
+        let values: Vec<[f64; 2]> = values.values().copied().collect();
+        let is_rate = quantity_of(start).is_some_and(|quantity| quantity.is_rate);
+        let point = |&[time_secs, value]: &[f64; 2]| {
+            let before = values.partition_point(|[at, _]| *at <= time_secs - RATE_SECS);
+            match (is_rate, before.checked_sub(1)) {
+                (false, _) => [time_secs, value],
+                (true, None) => [time_secs, f64::NAN],
+                (true, Some(before)) => {
+                    let [then_secs, then] = values[before];
+                    [time_secs, (value - then) / (time_secs - then_secs)]
+                }
+            }
+        };
+        let stride = values.len().div_ceil(MOST_POINTS).max(1);
+        values.iter().step_by(stride).map(point).filter(|[_, value]| value.is_finite()).collect()
+    }
+
+    /// Draws the plot into the space that is left; nothing if the scene has no quantity of its own.
+    pub(crate) fn draw(&self, ui: &mut Ui, frame: &LiveFrame) {
+        let start = frame.start.as_ref();
+        let Some((start, quantity)) = start.and_then(|start| Some((start, quantity_of(start)?)))
+        else {
+            return;
+        };
+        ui.add(Label::new(RichText::new(quantity.title).small()).truncate());
+        let worlds: Vec<_> =
+            (0..self.worlds.len()).map(|world| self.points(start, world)).collect();
+        let values = worlds.iter().flatten().map(|point| point[1]);
+        let least = [[0.0, start.scene.duration_secs], with_room(values, false)];
+        let height = (ui.available_height() - 2.0).max(40.0);
+        let plot = plot_with_axes(ui, "experiment", height, [false, false], " s");
+        let dark = ui.visuals().dark_mode;
+        with_least(plot, least).show(ui, |plot| {
+            plot.vline(VLine::new("now", frame.time_secs()).color(Color32::GRAY).width(1.0));
+            for (world, points) in worlds.into_iter().enumerate() {
+                let colour = theme::world_colour(world, dark);
+                plot.line(Line::new(quantity.title, points).color(colour).width(1.6));
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{SCENES, SceneGroup};
+
+    #[test]
+    fn every_experiment_has_a_quantity_with_a_finite_value() {
+        for info in SCENES.iter().filter(|info| info.group == SceneGroup::Experiments) {
+            let scene = (info.make)().unwrap();
+            let quantity = QUANTITIES.iter().find(|quantity| quantity.scene == scene.name);
+            let quantity = quantity.unwrap_or_else(|| panic!("{}", info.name));
+            let mut run = scene.clone().simulation().unwrap();
+            run.take_steps(400).unwrap();
+            let value = (quantity.of)(&scene, &run.snapshot());
+            // Before the grains of a shear cell touch, there is no stress.
+            assert!(value.is_finite() || run.observables().contacts == 0, "{}: {value}", info.name);
+        }
+        let collapse =
+            (SCENES.iter().find(|info| info.name == "collapse").unwrap().make)().unwrap();
+        assert_eq!(events(&collapse).len(), 2, "the gates go, and stop");
+    }
+}
