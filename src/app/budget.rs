@@ -56,11 +56,11 @@ pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 /// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`docs/paper.md`, Fig. 5a); beyond it need not.
 const WEAK: f64 = 50.0;
 
-/// Overlap, in mean diameters, up to which a contact is only found late. A grain that falls down the paper's pile (10 d) moves
-/// as far in a step of 1 ms. A smaller value warns of most runs with the default settings.
-pub(super) const USUAL_OVERLAP: f64 = 0.2;
+/// Longest fall from rest in one step without a warning, in mean diameters. A smaller value warns at the end of the slider
+/// of Δt.
+const LONGEST_FALL: f64 = 0.2;
 
-/// A warning of a step in which a grain at rest falls by more than [`USUAL_OVERLAP`].
+/// A warning of a step in which a grain at rest falls by more than [`LONGEST_FALL`].
 pub(super) fn too_long(
     settings: &Settings,
     surroundings: &Surroundings,
@@ -69,7 +69,7 @@ pub(super) fn too_long(
     let step_secs = settings.parameters.time_step_secs / f64::from(substeps.max(1));
     let fall = surroundings.gravity_magnitude * step_secs.powi(2) / surroundings.mean_diameter;
     let digits = usize::from(fall < 10.0);
-    (fall > USUAL_OVERLAP).then(|| {
+    (fall > LONGEST_FALL).then(|| {
         format!(
             "Δt is too long: in one step a grain at rest falls by {fall:.digits$} diameters, and contacts are found too \
              late. Choose a smaller Δt."

@@ -20,7 +20,7 @@ use crate::output::{Seal, write_file};
 /// What files begin with.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
-    format: 7,
+    format: 8,
     what: "session",
     of: "",
     form: "a session that the window saved",

@@ -61,6 +61,12 @@ pub(crate) fn rounded_down(number: f64) -> f64 {
     format!("{below:.1e}").parse().unwrap_or(below)
 }
 
+/// A time (s) in milliseconds with its unit, with up to four digits.
+pub fn millis_text(secs: f64) -> String {
+    let millis = 1e3 * secs;
+    format!("{} ms", format!("{millis:.3e}").parse().unwrap_or(millis))
+}
+
 #[cfg(test)]
 mod tests {
     use super::Parts;

@@ -1,6 +1,6 @@
 //! Alarms in words.
 
-use crate::app::budget::{FAST, USUAL_OVERLAP};
+use crate::app::budget::FAST;
 use crate::app::watched_run::WatchedRun;
 use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::{AlarmKind, Settings};
@@ -24,20 +24,11 @@ pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
-/// True for an alarm about something that was chosen, or that nearly every run shows: unsolved steps under Fast without
-/// cohesion (with cohesion they break bonds), and overlap up to [`USUAL_OVERLAP`].
+/// True for an alarm about something that was chosen: unsolved steps under Fast without cohesion. With cohesion, unsolved
+/// steps break bonds.
 fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let Settings { parameters, solver, .. } = world.controls.settings;
-    match alarm.kind {
-        AlarmKind::SweepLimit => {
-            solver == FAST.among(&world.snapshot.surroundings) && parameters.bond == 0.0
-        }
-        // An overlap that has passed since stays a reason for the alarm.
-        AlarmKind::Overlap => {
-            let now = &world.snapshot.observables;
-            let mut rows = world.curve.rows().chain([now]);
-            rows.all(|row| row.max_overlap <= USUAL_OVERLAP)
-        }
-        _ => false,
-    }
+    alarm.kind == AlarmKind::SweepLimit
+        && solver == FAST.among(&world.snapshot.surroundings)
+        && parameters.bond == 0.0
 }

@@ -78,6 +78,29 @@ fn overlap_that_grains_were_placed_with_is_no_matter_of_the_time_step() {
 }
 
 #[test]
+fn a_contact_that_is_found_late_is_no_alarm_and_a_step_that_is_too_long_is() {
+    let pile = |bond: f64, time_step_secs: f64| {
+        let mut scene = paper_pile().expect("the shipped state");
+        scene.solver = SolverSettings::default();
+        scene.parameters.time_step_secs = time_step_secs;
+        scene.parameters.bond = bond;
+        scene
+    };
+    for (bond, time_step_secs) in
+        [(0.0, 1e-3), (20.0, 1e-3), (0.0, 5e-3), (20.0, 5e-3), (100.0, 5e-3)]
+    {
+        let mut run = start(&pile(bond, time_step_secs));
+        let mut deepest = 0f64;
+        for _ in 0..(0.15 / time_step_secs) as usize {
+            deepest = run.step().expect("a finite state").max_overlap.max(deepest);
+        }
+        assert!(deepest > 0.05, "Bond {bond}, {time_step_secs} s: {deepest}");
+        assert_eq!(run.alarms(), [], "Bond {bond}, {time_step_secs} s");
+    }
+    assert_eq!(kinds(&pile(20.0, 2e-2), 20), [AlarmKind::Overlap]);
+}
+
+#[test]
 fn a_grain_that_was_placed_in_a_wall_has_not_gone_through_it() {
     let mut scene = column(1);
     let diameter = scene.mean_diameter;

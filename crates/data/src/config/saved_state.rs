@@ -13,7 +13,7 @@ use crate::world::Gravity;
 /// The header of the files.
 const SEAL: Seal = Seal {
     magic: "slump-state ",
-    format: 6,
+    format: 7,
     what: "state",
     of: " of a run",
     form: "a state that --save or --checkpoint-every wrote",

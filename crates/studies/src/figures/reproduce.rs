@@ -82,8 +82,7 @@ fn opening(effort: Effort) -> String {
              hold where its contrary is below 0.05. Intervals hold the true value in 95 % of samples. *By chance* says how often \
              the same test says that a claim holds where Δt has no effect, by shuffling Δt among the runs of each initial \
              state; *hangs on* names the choices that were free.\n\n\
-             Alarms that runs raised are counted with each claim. Piles overlap by more than 5 % of a \
-             diameter somewhere by nature, most of all at large Δt; a claim on runs that lost grains, or had no \
+             Alarms that runs raised are counted with each claim. A claim on runs that lost grains, or had no \
              finite end, is not decided.\n",
         );
     text
