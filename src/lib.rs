@@ -40,7 +40,7 @@ pub use slump_data::{config, data, granular, interchange};
 #[doc(hidden)]
 pub use slump_studies as study;
 
-use slump_core::threads;
+use slump_core::{number, threads};
 use slump_data::output;
 
 /// The version, with the commit if it is known.

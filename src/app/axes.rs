@@ -24,7 +24,7 @@ pub(super) fn bare_plot<'a>(
 }
 
 /// A plot with an axis along x in that unit; `log` says which axes are logarithmic. Numbers along a logarithmic axis
-/// with a unit are written in full.
+/// with a unit are written in full. Times along a linear axis are in seconds and written in milliseconds.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -87,7 +87,8 @@ fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'
         if log {
             return format!("{}{unit}", 10f64.powf(mark.value));
         }
-        format!("{}{unit}", decimal(mark.value, mark.step_size))
+        let factor = if unit == " ms" { 1e3 } else { 1.0 };
+        format!("{}{unit}", decimal(factor * mark.value, factor * mark.step_size))
     })
 }
 

@@ -17,6 +17,7 @@ use crate::data::{
 use crate::error::{Error, Result};
 use crate::headless::recording_sentence;
 use crate::live::{ControlsChange, HandEdit, WorldRecord};
+use crate::number::millis_text;
 use crate::sim::{Edit, Pull, RunEnding, Simulation};
 use crate::world::Disc;
 
@@ -117,15 +118,16 @@ impl DataOrder {
     fn stretch_of(&self, record: &WorldRecord) -> Result<[f64; 2]> {
         let Some([from, to]) = self.stretch else { return Ok([f64::NEG_INFINITY, f64::INFINITY]) };
         let (first, last) = (record.start().time_secs(), record.end_secs());
-        let recorded = format!("within what is recorded, {first} s to {last} s");
-        for (name, secs) in [("from", from), ("to", to)] {
+        let [recorded, found] = [[first, last], [from, to]].map(|times| times.map(millis_text));
+        let recorded = format!("within the recording, {} to {}", recorded[0], recorded[1]);
+        for (name, secs, found) in [("from", from, &found[0]), ("to", to, &found[1])] {
             if !(first..=last).contains(&secs) {
-                return Err(Error::value(name, secs, recorded));
+                return Err(Error::value(name, found, recorded));
             }
         }
         if to < from {
-            let allowed = format!("at or after the {from} s it is to begin at");
-            return Err(Error::value("to", to, allowed));
+            let allowed = format!("at or after the beginning, {}", found[0]);
+            return Err(Error::value("to", &found[1], allowed));
         }
         Ok([from, to])
     }

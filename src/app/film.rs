@@ -11,6 +11,7 @@ use super::work::Reporter;
 use crate::error::{Error, Result};
 use crate::film::{Animation, Video};
 use crate::headless::WaitingStates;
+use crate::number::millis_text;
 use crate::output::{check_writable, counted};
 use crate::render::{Renderer, RendererChoice, speed_reference};
 use crate::sim::{RunEnding, Settings, Simulation};
@@ -124,8 +125,11 @@ impl FilmOrder {
         let each = self.speed / self.rate_hz;
         let count = ((until.min(last) - from.max(first)) / each * (1.0 + 1e-12)).floor();
         if !(0.0..MOST_PICTURES).contains(&count) {
-            let found =
-                format!("{} s at {} pictures a second", until - from, self.rate_hz / self.speed);
+            let found = format!(
+                "{} at {} pictures per ms",
+                millis_text(until - from),
+                1e-3 * self.rate_hz / self.speed
+            );
             let allowed = format!("one picture at least and no more than {MOST_PICTURES}");
             return Err(Error::value(self.format.name(), found, allowed));
         }

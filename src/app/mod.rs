@@ -38,6 +38,7 @@ mod settling_progress;
 mod state;
 pub mod theme;
 mod time_step_figure;
+mod time_text;
 mod titles;
 mod told;
 mod ui;

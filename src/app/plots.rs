@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::axes::{plot_with_axes, with_least, with_room};
 use super::curve_pieces::pieces;
 use super::ensemble::Band;
+use super::time_text::clock_text;
 use crate::data::Observed;
 use crate::live::Curve;
 use crate::render::numbers::si_prefix;
@@ -101,7 +102,7 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     let group = egui::Id::unique("time");
     let height = (ui.available_height() - 2.0).max(40.0);
     let until_secs = end_secs(data);
-    let plot = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " s");
+    let plot = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " ms");
     let response = with_least(plot, [[0.0, data.until_secs], least_span(data, quantity, factor)])
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
@@ -221,7 +222,7 @@ fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
         return None;
     };
     let value = if log { format!("{:.1e}", 10f64.powf(at.y)) } else { format!("{:.4}", at.y) };
-    Some(format!("{name}\n{:.4} s\n{value}", at.x))
+    Some(format!("{name}\n{}\n{value}", clock_text(at.x)))
 }
 
 /// The logarithm of a value along a logarithmic axis.
@@ -438,7 +439,7 @@ mod tests {
         let mut counts = [0, 0];
         for clipped in painted {
             let egui::Shape::Text(text) = clipped.shape else { continue };
-            let number = text.galley.text().trim_end_matches(" s").replace('−', "-");
+            let number = text.galley.text().trim_end_matches(" ms").replace('−', "-");
             if number.parse::<f64>().is_ok() {
                 counts[usize::from(text.visual_bounding_rect().center().y < 240.0)] += 1;
             }

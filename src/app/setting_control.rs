@@ -7,7 +7,9 @@ use egui::{
 };
 
 use super::theme;
+use super::time_text::{millis, read_secs};
 use crate::error::Error;
+use crate::number::millis_text;
 use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
@@ -86,18 +88,28 @@ pub(super) fn called(about: &About) -> &'static str {
 
 /// Why a typed number is not accepted.
 fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -> Option<String> {
-    let refused =
-        |allowed| Some(format!("{} is {}, but must be {allowed}", called(about), written(number)));
+    let is_time = is_time(control);
+    let refused = |allowed| {
+        let found = shown(control, number);
+        let unit = if is_time { " ms" } else { "" };
+        Some(format!("{} is {found}{unit}, but must be {allowed}", called(about)))
+    };
     let whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
     if about.kind == Kind::Count && !whole {
         return refused("a whole number ≥ 0".to_owned());
     }
     if number > control.most {
-        return refused(format!("at most {}", written(control.most)));
+        return refused(match is_time {
+            true => format!("at most {}", millis_text(control.most)),
+            false => format!("at most {}", written(control.most)),
+        });
     }
     let mut tried = *settings;
     tried.set(about.name, of_number(about.kind, number)?);
     match tried.validate().err()? {
+        Error::Value { field, .. } if field == about.name && is_time => {
+            refused("above 0 ms".to_owned())
+        }
         Error::Value { field, allowed, .. } if field == about.name => refused(allowed),
         of_others => Some(of_others.to_string()),
     }
@@ -124,22 +136,26 @@ fn number(
     ui.horizontal(|ui| {
         ui.label(control.label).on_hover_text(control.hint);
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            if !control.unit.is_empty() {
-                ui.label(RichText::new(control.unit).weak());
+            let unit = if is_time(control) { "ms" } else { control.unit };
+            if !unit.is_empty() {
+                ui.label(RichText::new(unit).weak());
             }
             let id = ui.scope_id().with(("number", control.label));
             let is_refused = draft.is_some() && !ui.memory(|memory| memory.has_focus(id));
-            let mut text = draft.clone().unwrap_or_else(|| written(value));
+            let mut text = draft.clone().unwrap_or_else(|| shown(control, value));
             let response = field(ui, id, control.label, &mut text, is_refused);
             let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
             if response.double_clicked() && !response.changed() {
                 edited = Some(default);
-            } else if response.lost_focus() && (given_up || typed(&text, value, &refuse).is_ok()) {
-                edited = typed(&text, value, &refuse).ok().filter(|_| !given_up);
+            } else if response.lost_focus()
+                && (given_up || typed(control, &text, value, &refuse).is_ok())
+            {
+                edited = typed(control, &text, value, &refuse).ok().filter(|_| !given_up);
                 ui.data_mut(|data| data.remove::<String>(draft_id));
             } else if response.lost_focus() || response.changed() {
                 ui.data_mut(|data| data.insert_temp(draft_id, text));
-            } else if let Some(refusal) = typed(&text, value, &refuse).err().filter(|_| is_refused)
+            } else if let Some(refusal) =
+                typed(control, &text, value, &refuse).err().filter(|_| is_refused)
             {
                 refused = Some(refusal);
             }
@@ -187,10 +203,18 @@ fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: 
 }
 
 /// The number that was typed, or why it is not accepted.
-fn typed(text: &str, value: f64, refuse: impl Fn(f64) -> Option<String>) -> Result<f64, String> {
+fn typed(
+    control: &Control,
+    text: &str,
+    value: f64,
+    refuse: impl Fn(f64) -> Option<String>,
+) -> Result<f64, String> {
     let text = text.trim();
-    let number = text.replace('−', "-").replace(',', ".").parse::<f64>();
-    let number = number.map_err(|_| format!("“{text}” is no number"))?;
+    let plain = text.replace('−', "-").replace(',', ".");
+    let number = match is_time(control) {
+        true => read_secs(&plain).ok_or_else(|| format!("“{text}” is not a time, such as 2 ms")),
+        false => plain.parse().map_err(|_| format!("“{text}” is not a number")),
+    }?;
     let refusal = if number == value { None } else { refuse(number) };
     refusal.map_or(Ok(number), Err)
 }
@@ -208,6 +232,16 @@ fn show_refusal(ui: &Ui, id: egui::Id, slider: Rect, refusal: String) {
                 ui.label(RichText::new(refusal).small().color(colour));
             });
         });
+}
+
+/// True if the window shows a setting in milliseconds, which is declared in seconds.
+fn is_time(control: &Control) -> bool {
+    control.unit == "s"
+}
+
+/// The value of a setting as its field shows it.
+fn shown(control: &Control, value: f64) -> String {
+    written(if is_time(control) { millis(value) } else { value })
 }
 
 /// A number as people type it: short, and read back as the same number.

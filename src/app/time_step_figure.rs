@@ -7,8 +7,9 @@ use super::axes::{plot_with_axes, with_least, with_room};
 use super::ensemble::Released;
 use super::plots::LEAST_SLUMP;
 use super::theme;
-use super::titles::{millis_text, title_among};
+use super::titles::title_among;
 use crate::live::Controls;
+use crate::number::millis_text;
 use crate::sim::Settings;
 
 /// What is written above the plot.

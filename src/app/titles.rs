@@ -1,8 +1,11 @@
 //! Titles of worlds that are compared: each says which of its settings differ from those of the others.
 
 use super::budget::BUDGETS;
+use super::panels::FRONT_SETTINGS;
 use super::setting_control::{called, written};
+use super::time_text::clock_text;
 use crate::live::Controls;
+use crate::number::millis_text;
 use crate::setting::Value;
 use crate::sim::Settings;
 
@@ -50,15 +53,11 @@ pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> Stri
         }
     }
     let number = if worlds.len() > 1 { format!("{}: ", index + 1) } else { String::new() };
-    format!("{number}{text}, t = {time_secs:.4} s")
+    format!("{number}{text}, t = {}", clock_text(time_secs))
 }
 
 /// The settings of a run in which it differs from another.
 pub(super) fn title_against(one: &Settings, other: &Settings) -> String {
-    let secs = one.parameters.time_step_secs;
-    if one != other && one.over(other.parameters.time_step_secs) == *other {
-        return format!("Δt {}", millis_text(secs));
-    }
     title_among(&[one, other].map(|&settings| Controls { settings, pull: None }), 0)
 }
 
@@ -70,10 +69,10 @@ pub(super) fn change_text(before: &Settings, after: &Settings) -> String {
     format!("{from} → {}", to.strip_prefix(symbol).filter(|_| is_one).unwrap_or(&to))
 }
 
-/// A time step in milliseconds, with up to four digits.
-pub(super) fn millis_text(secs: f64) -> String {
-    let millis = 1e3 * secs;
-    format!("{} ms", format!("{millis:.3e}").parse().unwrap_or(millis))
+/// The settings of the four sliders that are always in view.
+pub(super) fn settings_text(settings: &Settings) -> String {
+    let all: Vec<String> = FRONT_SETTINGS.iter().filter_map(|name| said(settings, name)).collect();
+    all.join(", ")
 }
 
 /// A setting in a title.
@@ -84,6 +83,7 @@ fn said(settings: &Settings, name: &str) -> Option<String> {
         ("stepper" | "solver" | "friction-model", Value::Word(word)) => word.to_owned(),
         ("model-solves", Value::Count(count)) => format!("{count} solves"),
         ("max-sweeps", Value::Count(count)) => format!("{count} sweeps"),
+        (_, Value::Number(secs)) if unit == "s" => format!("{symbol} {}", millis_text(secs)),
         (_, Value::Number(number)) => {
             format!("{symbol} {} {unit}", written(number)).trim_end().to_owned()
         }
@@ -106,10 +106,10 @@ mod tests {
             let all = (0..controls.len()).map(|index| caption(&controls, index, 0.25));
             all.collect::<Vec<_>>()
         };
-        assert_eq!(of(&[base]), ["Bond 20, Δt 1e-3 s, t = 0.2500 s"]);
+        assert_eq!(of(&[base]), ["Bond 20, Δt 1 ms, t = 250.0 ms"]);
         assert_eq!(
             of(&[base, base.over(5e-3)]),
-            ["1: Δt 1e-3 s, Bond 20, t = 0.2500 s", "2: Δt 5e-3 s, Bond 20, t = 0.2500 s"]
+            ["1: Δt 1 ms, Bond 20, t = 250.0 ms", "2: Δt 5 ms, Bond 20, t = 250.0 ms"]
         );
     }
 
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(change_text(&base, &base.over(3e-4)), "Δt 1 ms → 0.3 ms");
         assert_eq!(change_text(&base, &base.with_bond(50.0)), "Bond 20 → 50");
         let both = change_text(&base, &base.with_bond(50.0).over(1e-4));
-        assert_eq!(both, "Bond 20, Δt 1e-3 s → Bond 50, Δt 1e-4 s");
+        assert_eq!(both, "Bond 20, Δt 1 ms → Bond 50, Δt 0.1 ms");
         let range = Settings { stepper: crate::sim::Stepper::Range, ..base };
         assert_eq!(change_text(&base, &range), "moreau → range");
     }

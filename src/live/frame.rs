@@ -26,7 +26,7 @@ pub struct LiveFrame {
     pub worlds: Vec<WorldFrame>,
     /// The user's name of the present run; may be empty.
     pub name: String,
-    /// Earlier runs, the newest last.
+    /// Earlier runs, the newest last, then those that were undone, the next one first.
     pub past: Arc<[PastRun]>,
     /// The worlds of the newest of them at the simulated time that is shown, or at its end; empty if nothing is stored.
     pub ghosts: Vec<Arc<Snapshot>>,
@@ -175,7 +175,7 @@ fn alarms(world: &WorldHistory) -> Vec<WorldAlarm> {
         // An overlap of placed grains concerns the next step's settings.
         let step = alarm.step + u64::from(alarm.kind == AlarmKind::PlacedInOverlap);
         let then = world.record.settings_of_step(step).unwrap_or(now);
-        let text = alarm.message(&then);
+        let text = alarm.message_in_millis(&then);
         let is_earlier = then != now;
         let text = if is_earlier { format!("under earlier settings: {text}") } else { text };
         WorldAlarm { kind: alarm.kind, text: text.into(), is_earlier }

@@ -19,7 +19,7 @@ fn a_slider_changes_the_time_step_of_the_next_snapshot() {
 #[test]
 fn a_value_is_typed() {
     let mut robot = Robot::open(pile());
-    robot.type_number("Δt, time step", "5e-4");
+    robot.type_number("Δt, time step", "500 us");
     robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.observables().time_step_secs, 5e-4);
 }
@@ -127,16 +127,17 @@ fn a_run_pauses_at_the_end_of_its_scene_and_plays_on_from_there() {
 #[test]
 fn what_makes_no_sense_is_refused_visibly() {
     let mut robot = Robot::open(pile());
-    for (text, complaint) in
-        [("-5", "Bond is -5, but must be a finite number ≥ 0"), ("strong", "“strong” is no number")]
-    {
+    for (text, complaint) in [
+        ("-5", "Bond is -5, but must be a finite number ≥ 0"),
+        ("strong", "“strong” is not a number"),
+    ] {
         robot.type_number("Bond", text);
         assert_eq!(robot.settings().parameters.bond, 20.0);
         assert!(robot.harness.query_by_label(complaint).is_some(), "{complaint}");
     }
     robot.type_number("Bond", "500");
     assert_eq!(robot.settings().parameters.bond, 500.0, "beyond the slider is no mistake");
-    assert!(!robot.shows("is no number"));
+    assert!(!robot.shows("is not a number"));
 }
 
 /// The command line of the run that is shown, and the scene that the next start would open.

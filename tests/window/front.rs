@@ -100,7 +100,7 @@ fn every_scene_starts_again_with_the_new_value() {
         let start = robot.bits();
         robot.take_steps(3);
         let time_step_secs = 0.5 * robot.settings().parameters.time_step_secs;
-        robot.type_number("Δt, time step", &time_step_secs.to_string());
+        robot.type_number("Δt, time step", &format!("{time_step_secs} s"));
         assert!(robot.state().run.frame.playing, "{}", info.name);
         robot.key(egui::Key::Space);
         let row = robot.observables();
@@ -281,14 +281,14 @@ fn a_budget_is_computed_to_its_end_though_its_list_is_closed() {
 const BEYOND_REASON: [(&str, &str, &str); 3] = [
     ("Bond", "1e308", "Bond is 1e308, but must be at most 1e6"),
     ("μ, friction", "1e9", "μ is 1e9, but must be at most 1e6"),
-    ("Δt, time step", "5", "Δt is 5, but must be at most 1"),
+    ("Δt, time step", "5000", "Δt is 5000 ms, but must be at most 1000 ms"),
 ];
 
 #[test]
 fn a_time_step_that_is_too_long_is_warned_of_instead_of_praised() {
     let mut robot = Robot::open(pile());
     assert!(robot.shows("A larger Δt makes these grains stick better"), "the situation");
-    robot.type_number("Δt, time step", "1");
+    robot.type_number("Δt, time step", "1 s");
     robot.frames(2);
     assert!(robot.shows("Δt is too long: in one step a grain at rest falls by 19"));
     assert!(!robot.shows("stick better") && robot.shows("Can I trust this? no"));

@@ -202,7 +202,7 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     // The change that a lesson asks for leaves its statements true.
     robot.state_mut().visit(1);
     robot.settle();
-    robot.type_number("Δt, time step", "1e-4");
+    robot.type_number("Δt, time step", "0.1");
     robot.frames(2);
     assert!(robot.shows("This pile is stepped by 5 ms"));
     robot.type_number("Bond", "0");
@@ -267,7 +267,7 @@ fn the_lesson_on_bonds_asks_for_one_thing_after_the_other() {
     asks_in_view(&robot, "release");
     robot.take_steps(3);
     asks_in_view(&robot, "Δt");
-    robot.type_number("Δt, time step", "1e-4");
+    robot.type_number("Δt, time step", "0.1");
     robot.until("time to go on", |state| state.run.frame.time_secs() > 0.016);
     asks_in_view(&robot, "start again");
     robot.click("start again when I move a slider");

@@ -1,11 +1,11 @@
 //! Panel: runs that are saved and opened, and the recording as files for other programs.
 
-use egui::{Button, DragValue, RichText, TextEdit, Ui};
+use egui::{Button, RichText, TextEdit, Ui};
 
-use super::grain::compact;
 use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
 use crate::app::data_export::{DataChoices, DataOrder};
+use crate::app::time_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
 use crate::data::{DataSettings, FormatName, check_format};
 
@@ -82,8 +82,7 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let hint = "Simulated time from one frame of grains and contacts to the next. What is measured of whole \
             piles has a row each step in any case.";
         let label = ui.label("A frame each").on_hover_text(hint);
-        let every = DragValue::new(&mut choices.every_secs).range(EVERY[0]..=EVERY[1]);
-        let every = every.speed(1e-3).max_decimals(9).suffix(" s");
+        let every = time_field(&mut choices.every_secs).range(EVERY[0]..=EVERY[1]).speed(1e-3);
         ui.add_enabled(!choices.each_step, every).labelled_by(label.id);
         ui.toggle_value(&mut choices.each_step, "step").on_hover_text("A frame after each step.");
     });
@@ -142,13 +141,15 @@ fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
         if ui.checkbox(&mut is_all, "The whole recording").on_hover_text(hint).changed() {
             context.exports.data.stretch = (!is_all).then_some([first, last]);
         }
-        ui.label(RichText::new(format!("{} … {} s", compact(first), compact(last))).small().weak());
+        ui.label(
+            RichText::new(format!("{} … {}", clock_text(first), clock_text(last))).small().weak(),
+        );
     });
     let Some(stretch) = &mut context.exports.data.stretch else { return };
     egui::Grid::new("stretch").num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {
         for (secs, name) in stretch.iter_mut().zip(["From", "To"]) {
             let label = ui.label(name);
-            let value = DragValue::new(secs).range(first..=last).max_decimals(6).suffix(" s");
+            let value = time_field(secs).range(first..=last);
             let speed = 1e-3 * (last - first).max(1e-6);
             ui.add(value.speed(speed)).labelled_by(label.id);
             let here = ui.button("here");

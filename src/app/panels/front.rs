@@ -2,9 +2,9 @@
 
 use egui::{Button, ComboBox, RichText, Slider, Ui};
 
-use super::grain::compact;
 use super::shown_settings::{FRONT_SETTINGS, shown_settings};
 use crate::app::context::PanelContext;
+use crate::app::time_text::clock_text;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
 
@@ -115,7 +115,7 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let end = context.run.frame.recorded_secs();
     let now = context.run.frame.time_secs();
     let duration = context.run.duration_secs();
-    let label = format!("{} / {} s", compact(now), compact(end));
+    let label = format!("{:.1} / {}", 1e3 * now, clock_text(end));
     let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
     ui.with_layout(from_the_right, |ui| {
         ui.allocate_ui_with_layout(egui::vec2(118.0, 20.0), from_the_right, |ui| {

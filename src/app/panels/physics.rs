@@ -7,6 +7,7 @@ use super::shown_settings::{FRONT_SETTINGS, shown_settings};
 use crate::app::watched_run::WatchedRun;
 use crate::app::{setting_control, theme};
 use crate::contact::range::escape_speed;
+use crate::number::millis_text;
 use crate::sim::{Settings, Stepper};
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
@@ -86,7 +87,7 @@ fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
         }
         if let Some(secs) = world.contact_time_secs {
             let hint = "How long two grains of the mean mass push each other that meet.";
-            row("contact time t_c", hint, si(secs, "s"));
+            row("contact time t_c", hint, millis_text(secs));
         }
         if let Some(work) = world.fracture_work {
             row(

@@ -8,6 +8,7 @@ use super::scene_style::{columns, shared_style};
 use crate::app::context::PanelContext;
 use crate::app::painting::{LegendCache, fill, scene_callback};
 use crate::app::theme;
+use crate::app::time_text::clock_text;
 use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Legend, ScaleBar, Style, scene_picture};
@@ -134,8 +135,8 @@ impl WorldCell<'_> {
         }
         let painter = ui.painter().with_clip_rect(self.cell);
         let title = title_against(&world.controls.settings, &self.frame.controls.settings);
-        let text =
-            format!("earlier run (grey): {title}, at {:.3} s", snapshot.observables.time_secs);
+        let time = clock_text(snapshot.observables.time_secs);
+        let text = format!("earlier run (grey): {title}, at {time}");
         let lines = if context.run.compares() { 2.0 } else { 0.0 };
         let at = self.cell.min + egui::vec2(8.0, 0.5 * TITLE_HEIGHT + 16.0 * lines);
         let ink = ui.visuals().weak_text_color();

@@ -7,6 +7,7 @@ use crate::app::budget::{BUDGETS, Budget};
 use crate::app::watched_run::WatchedRun;
 use crate::app::{setting_control, theme};
 use crate::live::WorldFrame;
+use crate::number::millis_text;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
 use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
@@ -182,13 +183,13 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
             let substeps = world.substeps.to_string();
             reading(ui, "substeps", substeps, "Substeps of the next step.");
             let substep_secs = settings.parameters.time_step_secs / f64::from(world.substeps);
-            reading(ui, "substep", format!("{substep_secs:.1e} s"), "Length of a substep.");
+            reading(ui, "substep", millis_text(substep_secs), "Length of a substep.");
             ui.end_row();
         }
         if let Some(critical_secs) = world.critical_time_step_secs {
             let hint = "Substeps up to this length are surely stable; a little longer, and \
                         crowded grains blow up.";
-            reading(ui, "critical", format!("{critical_secs:.1e} s"), hint);
+            reading(ui, "critical", millis_text(critical_secs), hint);
             ui.end_row();
         }
     });

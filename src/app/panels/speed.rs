@@ -10,6 +10,7 @@ use super::grain::compact;
 use crate::Instant;
 use crate::app::axes::{plot_with_axes, with_least, with_room};
 use crate::app::theme;
+use crate::app::time_text::clock_text;
 use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Reporter, Work, outcome_of_ended};
 use crate::error::Result;
@@ -174,7 +175,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     legend(ui, curves);
     let time_secs = race.time_secs;
     let text = format!(
-        "The step that follows t = {time_secs:.4} s, measured here; ◆ is the present method."
+        "The step that follows t = {}, measured here; ◆ is the present method.",
+        clock_text(time_secs)
     );
     ui.label(RichText::new(text).small().weak());
 }

@@ -1,0 +1,74 @@
+//! Times as the window writes and reads them: in milliseconds. Files and command lines have seconds.
+
+use egui::DragValue;
+
+use super::setting_control::written;
+
+/// Units of time that a field understands, and their powers of ten in seconds. A number without a unit is in ms.
+const UNITS: [(&str, i32); 5] = [("ms", -3), ("us", -6), ("µs", -6), ("μs", -6), ("s", 0)];
+
+/// A time in seconds from a text such as "2 ms", "200 us", "1e-3 s" or "2"; `None` if it is not a time.
+pub(super) fn read_secs(text: &str) -> Option<f64> {
+    let with_unit = UNITS.iter().find_map(|(unit, power)| Some((text.strip_suffix(unit)?, *power)));
+    let (number, power) = with_unit.unwrap_or((text, -3));
+    shifted(number.trim(), power)
+}
+
+/// A time (s) in milliseconds. The decimal digits are the same, so that [`read_secs`] gives the same time.
+pub(super) fn millis(secs: f64) -> f64 {
+    shifted(&format!("{secs:e}"), 3).unwrap_or(1e3 * secs)
+}
+
+/// A simulated time (s) on a clock, to 0.1 ms.
+pub(super) fn clock_text(secs: f64) -> String {
+    format!("{:.1} ms", 1e3 * secs)
+}
+
+/// A field for a time in seconds, which shows and reads milliseconds.
+pub(super) fn time_field(secs: &mut f64) -> DragValue<'_> {
+    DragValue::new(secs)
+        .custom_formatter(|secs, _| written((1e9 * secs).round() / 1e6))
+        .custom_parser(|text| read_secs(text.trim()))
+        .suffix(" ms")
+}
+
+/// A decimal number times a power of ten.
+fn shifted(text: &str, power: i32) -> Option<f64> {
+    let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let exponent = exponent.parse::<i32>().ok()?.checked_add(power)?;
+    format!("{digits}e{exponent}").parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_understands_three_units_and_takes_a_plain_number_as_milliseconds() {
+        for (text, secs) in [
+            ("2", 2e-3),
+            ("2 ms", 2e-3),
+            ("2ms", 2e-3),
+            ("200 us", 2e-4),
+            ("200 µs", 2e-4),
+            ("200 μs", 2e-4),
+            ("1e-3 s", 1e-3),
+            ("0.3", 3e-4),
+            ("5e-2", 5e-5),
+        ] {
+            assert_eq!(read_secs(text), Some(secs), "{text}");
+        }
+        for text in ["", "ms", "s", "2 min", "e3", "two"] {
+            assert_eq!(read_secs(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_time_reads_back_as_the_same_time() {
+        for secs in [1e-4, 3e-4, 7e-4, 2.3e-3, 1.0 / 3.0, 0.1 + 0.2, 1e-300, 0.0] {
+            assert_eq!(read_secs(&written(millis(secs))), Some(secs), "{secs}");
+        }
+        assert_eq!(written(millis(3e-4)), "0.3");
+        assert_eq!(clock_text(0.35), "350.0 ms");
+    }
+}
