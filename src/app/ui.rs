@@ -50,10 +50,13 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     if pressed(Modifiers::COMMAND, Key::Q) {
         context.send_viewport_cmd(egui::ViewportCommand::Close);
     }
-    if pressed(Modifiers::COMMAND, Key::Z)
-        && let Some(last) = state.run.frame.past.last()
-    {
-        state.run.live.send(Command::Return(last.number));
+    // The longer combination comes first: the shorter one also matches it.
+    let redo = [(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z), (Modifiers::COMMAND, Key::Y)];
+    if redo.into_iter().any(|(modifiers, key)| pressed(modifiers, key)) {
+        state.run.redo();
+    }
+    if pressed(Modifiers::COMMAND, Key::Z) {
+        state.run.undo();
     }
     if pressed(Modifiers::COMMAND, Key::S) {
         state.save_session(context);

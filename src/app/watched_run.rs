@@ -151,10 +151,37 @@ impl WatchedRun {
     /// The last run before, if at most one of its worlds had other settings than now. A ghost of another comparison would
     /// be next to numbers that are not its own.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
-        let (last, worlds) = (self.frame.past.last()?, &self.frame.worlds);
+        let (last, worlds) = (self.undo_target()?, &self.frame.worlds);
         let others = last.worlds.iter().zip(worlds.iter());
         let others = others.filter(|(past, now)| past.controls.settings != now.controls.settings);
         (last.worlds.len() == worlds.len() && others.count() <= 1).then_some(last)
+    }
+
+    /// Goes back to the run before.
+    pub(crate) fn undo(&mut self) {
+        self.go_to(self.undo_target().map(|run| run.number));
+    }
+
+    /// Goes on to the run from which Undo came back.
+    pub(crate) fn redo(&mut self) {
+        self.go_to(self.redo_target().map(|run| run.number));
+    }
+
+    fn go_to(&mut self, number: Option<u64>) {
+        if let Some(number) = number {
+            self.draft = None;
+            self.live.send(Command::Return(number));
+        }
+    }
+
+    /// The run that Undo goes back to.
+    fn undo_target(&self) -> Option<&PastRun> {
+        self.frame.past.iter().rfind(|run| !run.is_undone)
+    }
+
+    /// The run that Redo goes on to.
+    fn redo_target(&self) -> Option<&PastRun> {
+        self.frame.past.iter().find(|run| run.is_undone)
     }
 
     /// Changes the settings of a world.

@@ -48,8 +48,8 @@ pub enum Command {
     /// Go back to the start with the present settings, and pause. The run is kept
     /// ([`LiveFrame::past`](super::LiveFrame::past)).
     Reset,
-    /// Go back to the earlier run of this number at the moment at which it was left, and pause. The present run is
-    /// kept.
+    /// Go back to the earlier run of this number, or on to an undone one, at the moment at which it was left, and pause.
+    /// The present run is kept.
     Return(u64),
     /// Name the earlier run of this number, or the present run if the number is `None`.
     Name(Option<u64>, String),

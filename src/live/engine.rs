@@ -195,7 +195,7 @@ impl Engine {
             Command::Compare(all) => self.restart(&all),
             Command::Reset => self.restart(&self.history.present.settings()),
             Command::Return(number) => {
-                if self.history.go_back(number) {
+                if self.history.go_to(number) {
                     self.mode = Mode::Paused;
                 }
             }

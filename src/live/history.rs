@@ -14,8 +14,10 @@ use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
 /// Largest number of earlier runs; the oldest is dropped.
-const MOST_PAST: usize = 4;
-/// An earlier run gets 1/8 of the memory for keyframes.
+const MOST_PAST: usize = 50;
+/// The newest of them get 1/8 of the memory for keyframes each. Older ones keep two keyframes, and are dropped if all
+/// keyframes together exceed that memory.
+const NEWEST: usize = 4;
 const PART_OF_PAST: usize = 8;
 /// Bytes of keyframes of the present worlds in a history that is handed out, and of each earlier run. Moments between
 /// keyframes can be computed again.
@@ -111,6 +113,11 @@ impl LiveRun {
         self.leader().map_or(0.0, |world| world.record.end_secs())
     }
 
+    /// Approximate memory of the keyframes, bytes.
+    fn bytes(&self) -> usize {
+        self.worlds.iter().map(|world| world.record.bytes()).sum()
+    }
+
     fn steps(&self) -> u64 {
         self.worlds.iter().map(WorldHistory::steps).sum()
     }
@@ -174,6 +181,8 @@ pub struct PastRun {
     pub number: u64,
     /// The user's name for it; may be empty.
     pub name: String,
+    /// True if the user went back from this run to an earlier one.
+    pub is_undone: bool,
     /// Simulated time of its last recorded step, s.
     pub recorded_secs: f64,
     /// Its worlds.
@@ -190,7 +199,7 @@ pub struct PastWorld {
 }
 
 impl PastRun {
-    fn of(run: &LiveRun) -> Self {
+    fn new(run: &LiveRun, is_undone: bool) -> Self {
         let of_world = |world: &WorldHistory| PastWorld {
             controls: Controls::of(&world.simulation),
             curve: world.curve.clone(),
@@ -199,6 +208,7 @@ impl PastRun {
         Self {
             number: run.number,
             name: run.name.clone(),
+            is_undone,
             recorded_secs: ends.fold(0.0, f64::max),
             worlds: run.worlds.iter().map(of_world).collect(),
         }
@@ -214,6 +224,8 @@ pub struct RunHistory {
     pub(super) present: LiveRun,
     /// Earlier runs, the oldest first.
     past: Vec<LiveRun>,
+    /// Runs from which the user went back; the one to be repeated next is the last.
+    undone: Vec<LiveRun>,
     /// Summaries of the earlier runs for a window.
     #[serde(skip)]
     told: Arc<[PastRun]>,
@@ -247,6 +259,8 @@ impl RunHistory {
         for run in other.past {
             self.keep(run);
         }
+        self.undone = other.undone.into_iter().filter_map(|run| self.kept(run)).collect();
+        self.tell();
         self.present = other.present;
         self.present.keep_within(self.recording_bytes);
         return_freed_memory();
@@ -255,6 +269,7 @@ impl RunHistory {
     pub(super) fn clear(&mut self) {
         self.present = LiveRun::default();
         self.past.clear();
+        self.undone.clear();
         self.tell();
     }
 
@@ -265,25 +280,31 @@ impl RunHistory {
         let worlds = all.iter().map(world).collect();
         let mut run = LiveRun { worlds, ..LiveRun::default() };
         run.keep_within(self.recording_bytes);
-        self.put_in_place(run);
-    }
-
-    /// Goes back to an earlier run, and keeps the present one. Returns false if there is no such run.
-    pub(super) fn go_back(&mut self, number: u64) -> bool {
-        let Some(index) = self.past.iter().position(|run| run.number == number) else {
-            return false;
-        };
-        let mut run = self.past.remove(index);
-        run.keep_within(self.recording_bytes);
-        self.put_in_place(run);
-        true
-    }
-
-    fn put_in_place(&mut self, run: LiveRun) {
         let before = std::mem::replace(&mut self.present, run);
         self.keep(before);
+        return_freed_memory();
+    }
+
+    /// Goes back to an earlier run, or on to one that was undone. The runs between are kept in their order. Returns
+    /// false if there is no such run.
+    pub(super) fn go_to(&mut self, number: u64) -> bool {
+        let has = |runs: &[LiveRun]| runs.iter().any(|run| run.number == number);
+        let is_back = has(&self.past);
+        if !is_back && !has(&self.undone) {
+            return false;
+        }
+        while self.present.number != number {
+            let next = if is_back { self.past.pop() } else { self.undone.pop() };
+            let Some(next) = next else { break };
+            let before = std::mem::replace(&mut self.present, next);
+            let before = self.kept(before);
+            if is_back { self.undone.extend(before) } else { self.past.extend(before) }
+        }
+        self.present.keep_within(self.recording_bytes);
+        self.limit();
         self.tell();
         return_freed_memory();
+        true
     }
 
     /// Keeps the present run as it is, if its next tick branches off from the record.
@@ -312,6 +333,7 @@ impl RunHistory {
     fn keep_copy(&mut self, before: LiveRun) {
         self.keep(before);
         self.present.name.clear();
+        self.present.number = 0;
     }
 
     /// The worlds of the newest earlier run at a simulated time, or the last stored moment before; none if nothing is
@@ -323,24 +345,47 @@ impl RunHistory {
         snapshots.collect::<Option<_>>().unwrap_or_default()
     }
 
-    /// Keeps a run of which something is recorded, with a part of the memory for keyframes. The newest one keeps a part
-    /// of its stored moments.
-    fn keep(&mut self, mut run: LiveRun) {
+    /// Keeps a run as the newest earlier one. Runs that were undone become earlier runs, too.
+    fn keep(&mut self, run: LiveRun) {
+        self.past.extend(self.undone.drain(..).rev());
+        let run = self.kept(run);
+        self.past.extend(run);
+        self.limit();
+        self.tell();
+    }
+
+    /// A run with a number and with a part of the memory; nothing if no step of it is recorded.
+    fn kept(&mut self, mut run: LiveRun) -> Option<LiveRun> {
         if !run.worlds.iter().any(|world| world.record.has_steps()) {
-            return;
+            return None;
         }
         run.keep_within(self.recording_bytes / PART_OF_PAST);
         let bytes = STORED_BYTES / PART_OF_PAST / run.worlds.len();
         run.worlds.iter_mut().for_each(|world| world.stored.keep_within(bytes));
-        let older = self.past.iter_mut().flat_map(|run| &mut run.worlds);
-        older.for_each(|world| world.stored = StoredMoments::default());
-        self.count += 1;
-        run.number = self.count;
-        self.past.push(run);
-        if self.past.len() > MOST_PAST {
-            self.past.remove(0);
+        if run.number == 0 {
+            self.count += 1;
+            run.number = self.count;
         }
-        self.tell();
+        Some(run)
+    }
+
+    /// Limits the memory of the runs that are kept. Only the newest earlier run keeps stored moments.
+    fn limit(&mut self) {
+        let older = self.past.len().saturating_sub(1);
+        let older = self.past[..older].iter_mut().chain(&mut self.undone);
+        let worlds = older.flat_map(|run| &mut run.worlds);
+        worlds.for_each(|world| world.stored = StoredMoments::default());
+        let old = self.past.len().saturating_sub(NEWEST);
+        for run in &mut self.past[..old] {
+            run.keep_within(0);
+            run.worlds.iter_mut().for_each(|world| world.curve.thin_to(PAST_ROWS));
+        }
+        let mut bytes: usize = self.past.iter().map(LiveRun::bytes).sum();
+        while self.past.len() > MOST_PAST
+            || (self.past.len() > NEWEST && bytes > self.recording_bytes)
+        {
+            bytes -= self.past.remove(0).bytes();
+        }
     }
 
     /// Names an earlier run, or the present one.
@@ -348,28 +393,35 @@ impl RunHistory {
         match number {
             None => self.present.name = name,
             Some(number) => {
-                let run = self.past.iter_mut().find(|run| run.number == number);
+                let mut runs = self.past.iter_mut().chain(&mut self.undone);
+                let run = runs.find(|run| run.number == number);
                 run.into_iter().for_each(|run| run.name.clone_from(&name));
                 self.tell();
             }
         }
     }
 
-    /// Summaries of the earlier runs for a window, the newest last.
+    /// Summaries of the earlier runs for a window, the newest last, then those that were undone, the next one first.
     pub(super) fn told(&self) -> Arc<[PastRun]> {
         Arc::clone(&self.told)
     }
 
     fn tell(&mut self) {
-        self.told = self.past.iter().map(PastRun::of).collect();
+        let past = self.past.iter().map(|run| PastRun::new(run, false));
+        let undone = self.undone.iter().rev().map(|run| PastRun::new(run, true));
+        self.told = past.chain(undone).collect();
     }
 
     /// A copy with fewer keyframes and rows, to be handed out, without earlier runs whose state is no longer finite.
     pub(super) fn thinned(&self) -> Self {
-        let kept = self.past.iter().filter(|run| !run.has_failed());
+        let thinned = |runs: &[LiveRun]| {
+            let kept = runs.iter().filter(|run| !run.has_failed());
+            kept.map(|run| run.thinned(PAST_KEYFRAME_BYTES, PAST_ROWS)).collect()
+        };
         Self {
             present: self.present.thinned(KEYFRAME_BYTES, ROWS),
-            past: kept.map(|run| run.thinned(PAST_KEYFRAME_BYTES, PAST_ROWS)).collect(),
+            past: thinned(&self.past),
+            undone: thinned(&self.undone),
             ..Self::default()
         }
     }
@@ -419,7 +471,7 @@ impl RunHistory {
         let is_sound = |run: &LiveRun| {
             !run.worlds.is_empty() && run.worlds.iter().all(|world| world.record.is_sound())
         };
-        is_sound(&self.present) && self.past.iter().all(is_sound)
+        is_sound(&self.present) && self.past.iter().chain(&self.undone).all(is_sound)
     }
 
     /// Why one of its worlds cannot continue.

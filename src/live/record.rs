@@ -191,8 +191,13 @@ impl WorldRecord {
     }
 
     fn is_within_budget(&self) -> bool {
-        let newest = &self.keyframes[self.keyframes.len() - 1].simulation;
-        self.keyframes.len() < 3 || self.keyframes.len() * memory_bytes(newest) <= self.budget_bytes
+        self.keyframes.len() < 3 || self.bytes() <= self.budget_bytes
+    }
+
+    /// Approximate memory of the keyframes, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let newest = self.keyframes.last().map(|keyframe| &keyframe.simulation);
+        newest.map_or(0, |newest| self.keyframes.len() * memory_bytes(newest))
     }
 
     /// Limits the keyframes to about this many bytes.

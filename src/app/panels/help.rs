@@ -2,11 +2,12 @@
 
 use egui::{Align2, RichText, Ui};
 
-const KEYS: [(&str, &str); 15] = [
+const KEYS: [(&str, &str); 16] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
     ("R", "again from the start; this run is kept"),
-    ("Ctrl Z", "back to the run that was there before"),
+    ("Ctrl Z", "undo: back to the run before"),
+    ("Ctrl Y", "redo: on to the run after, as with Ctrl Shift Z"),
     ("[  ]", "slower, faster"),
     ("B", "fold the bars: the scene is the window"),
     ("F", "frame the whole scene"),

@@ -3,10 +3,10 @@
 use egui::{Align, Button, RichText, Ui};
 
 use super::gallery::Gallery;
-use super::grain::compact;
 use crate::app::context::{PanelContext, Request};
 use crate::app::provenance::CHANGED;
-use crate::app::titles::title_among;
+use crate::app::time_text::clock_text;
+use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
@@ -179,8 +179,8 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     ui.horizontal(|ui| {
         ui.label("Earlier runs").on_hover_text(
-            "What a reset, other worlds, or going on differently from an earlier moment has taken the place of. \
-             The last four are kept.",
+            "The runs of this session: Ctrl Z goes back by one run, Ctrl Y goes on again. A click brings back a run \
+             with its settings.",
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.checkbox(&mut context.preferences.ghost, "Ghost")
@@ -197,14 +197,11 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 name_field(ui, context.run, Some(run.number), &run.name);
-                let title = title(run);
+                let title = title(run, context.run.slumps());
                 let name = if run.name.is_empty() { &title } else { &run.name };
-                let text = format!("↶ {name}, {} s", compact(run.recorded_secs));
+                let text = format!("{} {name}", if run.is_undone { "↷" } else { "↶" });
                 let back = ui.add(Button::new(RichText::new(text).size(11.5)).truncate());
-                let hint = format!(
-                    "Back to it (the last: Ctrl Z): {title}, {} s",
-                    compact(run.recorded_secs)
-                );
+                let hint = format!("Bring back {title}, {}", clock_text(run.recorded_secs));
                 if back.on_hover_text(hint).clicked() {
                     context.run.live.send(Command::Return(run.number));
                 }
@@ -233,12 +230,17 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     response.on_hover_text("What to call it; sessions keep the name.");
 }
 
-/// What its worlds were.
-fn title(run: &PastRun) -> String {
+/// The settings of an earlier run: of one world all sliders and the slump, of several worlds the differences.
+fn title(run: &PastRun, slumps: bool) -> String {
     let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
     let first = title_among(&controls, 0);
     match controls.len() {
-        0 | 1 => first,
+        0 => String::new(),
+        1 => {
+            let last = run.worlds[0].curve.last().filter(|_| slumps);
+            let slump = last.map_or(String::new(), |row| format!(", slump {:.3}", row.slump));
+            settings_text(&controls[0].settings) + &slump
+        }
         2 => format!("{first}; {}", title_among(&controls, 1)),
         count => format!("{count} worlds, {first}"),
     }
