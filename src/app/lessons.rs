@@ -205,6 +205,8 @@ impl Lesson {
             full_speed: false,
             starts_again: self.starts_again,
             page: self.page,
+            // The lessons on piles are about cohesion.
+            show_forces: self.scene == Config::DEFAULT_SCENE,
         }
     }
 }

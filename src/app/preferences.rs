@@ -157,6 +157,8 @@ pub(super) struct Choices {
     pub full_speed: bool,
     pub starts_again: bool,
     pub page: Option<Page>,
+    /// True if the forces of bonds and contacts are drawn.
+    pub show_forces: bool,
 }
 
 impl Choices {
@@ -168,6 +170,7 @@ impl Choices {
             full_speed: std::mem::replace(&mut preferences.full_speed, self.full_speed),
             starts_again: std::mem::replace(&mut preferences.starts_again, self.starts_again),
             page: std::mem::replace(&mut preferences.page, self.page),
+            show_forces: std::mem::replace(&mut preferences.style.show_forces, self.show_forces),
         }
     }
 }
