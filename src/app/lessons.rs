@@ -5,7 +5,8 @@ use glam::DVec2;
 
 use super::IN_BROWSER;
 use super::page::Page;
-use super::preferences::{Choices, Preferences};
+use super::predictions::{self, Question};
+use super::preferences::{Choices, LessonPlace, Preferences};
 use super::watched_run::WatchedRun;
 use crate::config::{Config, parse_discs};
 use crate::error::Result;
@@ -21,6 +22,12 @@ pub struct Lesson {
     pub title: &'static str,
     /// What to do, and what to watch.
     pub watch: &'static str,
+    /// The question before the pile is released.
+    pub question: Option<Question>,
+    /// What the lesson showed, in a sentence.
+    pub learnt: &'static str,
+    /// The sliders that the lesson uses, by the names of their settings.
+    pub sliders: &'static [&'static str],
     /// Its scene.
     pub scene: &'static str,
     /// What is seen of it, lower left and upper right, in mean diameters; none is all of it.
@@ -45,6 +52,9 @@ pub struct Lesson {
 const PILE: Lesson = Lesson {
     title: "",
     watch: "",
+    question: None,
+    learnt: "",
+    sliders: &["bond", "dt"],
     scene: "pile",
     view: None,
     worlds: |base| vec![base],
@@ -53,8 +63,15 @@ const PILE: Lesson = Lesson {
     page: None,
     starts_again: true,
     leaves_free: |_| false,
-    asks_for: |run, _| if waits_at_start(run) { &["release"] } else { &[] },
+    asks_for: |run, preferences| if waits_at_start(run) { first_step(preferences) } else { &[] },
 };
+
+/// The controls that a lesson lights before its pile is released: a prediction comes first.
+fn first_step(preferences: &Preferences) -> &'static [&'static str] {
+    let LessonPlace { at, predictions, .. } = &preferences.lesson;
+    let is_asked = lesson(*at).question.is_some() && !predictions.contains_key(at);
+    if is_asked { &["answers"] } else { &["release"] }
+}
 
 fn waits_at_start(run: &WatchedRun) -> bool {
     run.frame.at_start() && !run.frame.playing
@@ -99,22 +116,34 @@ fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
 /// All of them, in their order.
 pub const LESSONS: [Lesson; 7] = [
     Lesson {
-        title: "The time step glues",
+        title: "Two time steps",
         watch: if IN_BROWSER {
-            "One pile twice, with the same cohesion. Only the solver's time step differs: 0.1 ms and 5 ms. Release, \
-             and watch the slump. The mean of many piles differs likewise."
+            "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms."
         } else {
-            "One pile twice, with the same cohesion. Only the solver's time step differs: 0.1 ms and 5 ms. Release, \
-             and watch the slump; other piles, in the plot, say how far one pile speaks for all."
+            "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms. Thin \
+             lines in the plot are other piles with the same settings."
         },
+        question: Some(Question {
+            text: "Will both piles slump alike?",
+            answers: ["alike", "not alike"],
+            rows: predictions::last_rows,
+            result: predictions::two_time_steps,
+        }),
+        learnt: "Long steps act like glue: in each step cohesion stops grains that separate at up to Bond·g·Δt.",
         worlds: |base| two_time_steps(base, 20.0),
         ..PILE
     },
     Lesson {
-        title: "A bond made is a bond",
-        watch: "This pile is stepped by 5 ms. Release it. When it stands, drag Δt to 0.1 ms: time goes on, and the \
-                pile stays as it is, because its bonds hold. Then tick the box below and drag Δt a little: from the \
-                start, it slumps more.",
+        title: "A pile at rest",
+        watch: "This pile is stepped by 5 ms. Release it. When it rests, drag Δt to 0.1 ms: the run continues from there. At \
+                the end, tick the box below and drag Δt a little: now the pile starts again, and slumps more.",
+        question: Some(Question {
+            text: "What will the pile at rest do with the shorter Δt?",
+            answers: ["slump again", "stay"],
+            rows: predictions::rows_around_change,
+            result: predictions::shorter_at_rest,
+        }),
+        learnt: "A bond at rest holds at every Δt. The length of a step matters while grains are torn apart.",
         worlds: |base| vec![base.with_bond(20.0).over(LONG_STEP_SECS)],
         starts_again: false,
         leaves_free: |name| name == "dt",
@@ -122,19 +151,27 @@ pub const LESSONS: [Lesson; 7] = [
             let parameters = run.world().map(|world| world.controls.settings.parameters);
             let is_long = parameters.is_some_and(|it| it.time_step_secs == LONG_STEP_SECS);
             match (run.frame.playing, is_long) {
-                _ if waits_at_start(run) => &["release"],
+                _ if waits_at_start(run) => first_step(preferences),
                 (true, true) => &[],
                 (false, true) => &["Δt"],
                 _ if !preferences.starts_again => &["start again"],
                 _ => &[],
             }
         },
+        sliders: &["dt"],
         ..PILE
     },
     Lesson {
         title: "The solver's part",
-        watch: "The same step, 5 ms, solved by 5 sweeps, by 40 sweeps, and to a tolerance. What sweeps leave unsolved looks \
-                like weaker glue. The error of the velocities tells the three apart once the piles come to rest.",
+        watch: "The same step of 5 ms, solved in three ways: by 5 sweeps over all contacts, by 40 sweeps, and to a tolerance. \
+                The second plot shows the error of the velocities.",
+        question: Some(Question {
+            text: "Five sweeps leave steps unsolved. Will that pile hold better or worse than the solved one?",
+            answers: ["better", "worse"],
+            rows: predictions::last_rows,
+            result: predictions::unsolved_steps,
+        }),
+        learnt: "Unsolved steps look like weaker glue. Ask for the error of a solver before you trust its piles.",
         worlds: |base| {
             let base = base.with_bond(20.0).over(5e-3);
             vec![sweeps(base, 5), sweeps(base, 40), base]
@@ -143,31 +180,53 @@ pub const LESSONS: [Lesson; 7] = [
         ..PILE
     },
     Lesson {
-        title: "A law in which Δt means little",
-        watch: "Above the paper's law, moreau; below range, whose bonds live until they are opened by δc. At 0.1 ms and at \
-                5 ms: above, the time step decides; below, bonds hold at both.",
+        title: "Bonds with a length",
+        watch: "Above, the law of the paper (moreau): a bond breaks as soon as grains separate. Below, the law range: a bond \
+                breaks when it has been opened by δc. Each law runs with 0.1 ms and with 5 ms.",
+        question: Some(Question {
+            text: "Will Δt change the slump under range as much as under moreau?",
+            answers: ["as much", "less"],
+            rows: predictions::last_rows,
+            result: predictions::two_laws,
+        }),
+        learnt: "A bond with a length costs the same energy at every Δt, so the slump hardly depends on Δt.",
         worlds: |base| {
-            let of_law = |stepper| two_time_steps(Settings { stepper, ..base }, 20.0);
+            let of_law = |stepper| two_time_steps(Settings { stepper, ..base }, LESSON_4_BOND);
             [Stepper::Moreau, Stepper::Range].into_iter().flat_map(of_law).collect()
         },
         ..PILE
     },
     Lesson {
         title: "What friction depends on",
-        watch: "Bond 100. On the left friction is bounded by μ(N + C₀), cohesion included; on the right by μ max(N, 0): \
-                there the strong pile slumps. The paper can be read both ways.",
+        watch: "Bond 100. C₀ is the strength of a bond, N the force of a contact. On the left friction is at most μ(N + C₀): \
+                cohesion counts. On the right it is at most μN: cohesion does not count.",
+        question: Some(Question {
+            text: "Which pile will slump more?",
+            answers: ["left", "right"],
+            rows: predictions::last_rows,
+            result: predictions::two_cones,
+        }),
+        learnt: "Strong bonds hold a pile only if cohesion adds to friction. The paper can be read both ways.",
         worlds: |base| {
             let base = base.with_bond(100.0).over(1e-4);
             [FrictionCone::Shifted, FrictionCone::Compressive]
                 .map(|cone| in_cone(base, cone))
                 .into()
         },
+        sliders: &["bond", "dt", "mu"],
         ..PILE
     },
     Lesson {
-        title: "Where a method breaks",
-        watch: "A disc a thousand times as heavy on a light one. Ten sweeps a step cannot carry it, and the light disc is \
-                squeezed; on the right each step is solved. Watch the overlap.",
+        title: "A heavy disc",
+        watch: "A disc rests on a light disc and is a thousand times as heavy. On the left each step gets ten sweeps, on the \
+                right each step is solved. The plot shows the overlap.",
+        question: Some(Question {
+            text: "Will ten sweeps per step carry the heavy disc?",
+            answers: ["yes", "no"],
+            rows: predictions::last_rows,
+            result: predictions::ten_sweeps,
+        }),
+        learnt: "Each method breaks somewhere. Test it on a case whose right answer you know.",
         scene: "mass-ratio",
         // The light disc, of which one would see nothing beside the heavy one.
         view: Some([DVec2::new(-1.3, -0.3), DVec2::new(1.3, 1.4)]),
@@ -177,22 +236,28 @@ pub const LESSONS: [Lesson; 7] = [
             vec![sweeps(base, 10), base]
         },
         plots: &["overlap"],
+        sliders: &["dt"],
         ..PILE
     },
     Lesson {
         title: "Your own pile",
         watch: "On the right: another scene, or a new pile of your number of grains and seed. Drag the sliders below, drag \
-                grains with the mouse, and ask whether you can trust what you see.",
+                grains with the mouse, and ask whether you can trust the result.",
+        learnt: "A number needs several piles, a shorter Δt and a better solver before you can trust it.",
+        worlds: |base| vec![base.over(1e-4)],
         page: Some(Page::Pile),
         leaves_free: |_| true,
         asks_for: |run, preferences| match (waits_at_start(run), preferences.page) {
             (true, Some(Page::Pile)) => &["scenes", "new pile", "Bond", "Δt", "ρ", "μ", "trust"],
             _ => &[],
         },
+        sliders: &["bond", "dt", "rho", "mu"],
         ..PILE
     },
 ];
 
+/// Bond number at which the piles of lesson 4 slump under both laws.
+const LESSON_4_BOND: f64 = 8.0;
 /// The time step of the lesson on bonds, s.
 const LONG_STEP_SECS: f64 = 5e-3;
 
@@ -219,7 +284,6 @@ pub(super) fn lesson(at: usize) -> &'static Lesson {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::preferences::LessonPlace;
 
     #[test]
     fn the_pile_of_the_lessons_is_the_one_that_its_command_line_makes() {
@@ -242,7 +306,7 @@ mod tests {
         preferences.begin_lesson(6, LESSONS[6].choices());
         assert_ne!(preferences.quantities, chosen.quantities);
         preferences.put_lesson_away();
-        let lesson = LessonPlace { at: LESSONS.len() - 1, on: true, before: None };
+        let lesson = LessonPlace { at: LESSONS.len() - 1, ..LessonPlace::default() };
         assert_eq!(preferences, Preferences { lesson, ..chosen });
     }
 }

@@ -1,5 +1,6 @@
 //! What the window remembers between starts.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -7,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::data_export::DataChoices;
 use super::page::Page;
 use super::plots::ChosenPlot;
+use super::predictions::Prediction;
 use crate::config::Config;
 #[cfg(feature = "window")]
 use crate::error::Result;
@@ -139,13 +141,15 @@ pub struct LessonPlace {
     pub at: usize,
     /// True while a window that is told nothing else opens there.
     pub on: bool,
+    /// The predictions, by lesson.
+    pub predictions: BTreeMap<usize, Prediction>,
     /// What was chosen before the lessons, which comes back after them.
     pub(super) before: Option<Choices>,
 }
 
 impl Default for LessonPlace {
     fn default() -> Self {
-        Self { at: 0, on: true, before: None }
+        Self { at: 0, on: true, predictions: BTreeMap::new(), before: None }
     }
 }
 
@@ -180,7 +184,8 @@ impl Preferences {
     pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
         let replaced = choices.swap(self);
         let before = self.lesson.before.take().unwrap_or(replaced);
-        self.lesson = LessonPlace { at, on: true, before: Some(before) };
+        let predictions = std::mem::take(&mut self.lesson.predictions);
+        self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
     }
 
     /// Brings back the choices from before the lessons.

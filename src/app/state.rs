@@ -204,6 +204,7 @@ impl AppState {
         self.preferences.begin_lesson(at, LESSONS[at].choices());
         self.touring = true;
         self.panels.lesson_bar.loads_before = self.run.frame.loads;
+        self.panels.lesson_bar.shows_summary = false;
         self.set_pace();
         self.open(Opening::Lesson(at));
     }

@@ -40,7 +40,11 @@ fn take_dropped_files(context: &Context, state: &mut AppState) {
 
 /// Acts on the keys of this frame.
 fn act_on_keys(context: &Context, state: &mut AppState) {
-    state.panels.help &= !context.input(|input| input.key_pressed(Key::Escape));
+    if context.input(|input| input.key_pressed(Key::Escape)) {
+        state.panels.help = false;
+        state.panels.trust.is_open = false;
+        state.panels.lesson_bar.shows_summary = false;
+    }
     // A focused field or slider has a use of its own for letters and arrows.
     if context.egui_wants_keyboard_input() {
         return;

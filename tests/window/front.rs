@@ -230,7 +230,12 @@ fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
     config.source.duration = Some(0.05);
     let mut robot = Robot::open(config);
     robot.state_mut().ensemble.keep_in(cache.path().to_owned());
+    let scene = robot.state().controls["scene"];
     robot.click("Can I trust this? not known yet");
+    robot.frames(20);
+    assert!(robot.shows("Idle cores compute an error budget"));
+    let beside = robot.state().controls["scene"];
+    assert!(beside.width() < scene.width() - 300.0, "the answer covers nothing");
     let begun = Instant::now();
     while !robot.shows("mean(kinetic_energy) is ") {
         assert!(begun.elapsed() < Duration::from_secs(300), "waited in vain for the budget");
@@ -329,4 +334,22 @@ fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
     let (failed, odd) = places(config);
     assert!(failed, "the situation");
     assert_eq!(odd, usual);
+}
+
+#[test]
+fn the_answer_on_trust_begins_with_a_sentence_and_closes_with_escape() {
+    let mut robot = Robot::open(Config::of_scene("thin-wall"));
+    robot.take_steps(40);
+    robot.harness.step();
+    robot.click("Can I trust this? no");
+    robot.frames(20);
+    let lost = robot.harness.query_all_by_label_contains("lost").next();
+    let sentence = lost.map(|node| node.rect()).expect("the reason");
+    let heading = robot.harness.query_all_by_label("Can I trust this? no");
+    let heading = heading.map(|node| node.rect().bottom()).fold(f32::INFINITY, f32::min);
+    assert!(sentence.top() - heading < 20.0, "the reason comes first: {heading}, {sentence:?}");
+    robot.key(egui::Key::Escape);
+    robot.frames(20);
+    assert!(!robot.shows("Nobody has computed") && !robot.shows("no error budget"));
+    assert_eq!(robot.state().preferences.page, None);
 }

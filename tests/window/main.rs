@@ -14,6 +14,7 @@ mod controls;
 mod exports;
 mod front;
 mod hand;
+mod hard_scenes;
 mod lessons;
 mod looking;
 mod monkey;

@@ -23,7 +23,9 @@ mod statistics;
 mod sweep;
 mod validate;
 
-pub use budget::{BudgetOptions, ErrorBudget, Trust, budget, made as made_budget};
+pub use budget::{
+    BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust, budget, made as made_budget,
+};
 pub use figures::{figure_names, reproduce};
 pub use harness::Shard;
 pub use paper::{

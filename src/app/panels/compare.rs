@@ -56,7 +56,7 @@ struct LineUp {
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
-const LINE_UPS: [LineUp; 7] = [
+const LINE_UPS: [LineUp; 4] = [
     LineUp {
         name: "Paper Fig. 4",
         hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s, each step solved as for the figure.",
@@ -86,6 +86,10 @@ const LINE_UPS: [LineUp; 7] = [
         hint: "One Δt with Bond 0, 20, 50 and 100.",
         worlds: |base| [0.0, 20.0, 50.0, 100.0].map(|bond| base.with_bond(bond)).into(),
     },
+];
+
+/// Line-ups of methods, for those who study solvers.
+const METHOD_LINE_UPS: [LineUp; 3] = [
     LineUp {
         name: "Methods",
         hint: "As many methods as there is room for, on the same problem.",
@@ -142,11 +146,22 @@ fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
 }
 
 fn presets(ui: &mut Ui, run: &mut WatchedRun) {
+    line_ups(ui, run, &LINE_UPS);
+}
+
+/// The presets that compare methods.
+pub(super) fn method_presets(ui: &mut Ui, run: &mut WatchedRun) {
+    ui.label("Compare")
+        .on_hover_text("Worlds from one initial state, kept at the same simulated time.");
+    line_ups(ui, run, &METHOD_LINE_UPS);
+}
+
+fn line_ups(ui: &mut Ui, run: &mut WatchedRun, all: &[LineUp]) {
     let Some(start) = run.frame.start.as_ref() else { return };
     let worlds: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
     let base = base(start.settings(), &worlds);
     ui.horizontal_wrapped(|ui| {
-        for LineUp { name, hint, worlds } in &LINE_UPS {
+        for LineUp { name, hint, worlds } in all {
             if ui.button(*name).on_hover_text(*hint).clicked() {
                 run.live.send(Command::Compare(worlds(base)));
             }
@@ -195,7 +210,7 @@ mod tests {
         let mut dragged = scene.with_bond(35.0).over(2e-3);
         dragged.parameters.friction = 0.3;
         assert_eq!(base(&scene, &[dragged]), dragged, "one world");
-        for LineUp { name, worlds, .. } in &LINE_UPS {
+        for LineUp { name, worlds, .. } in LINE_UPS.iter().chain(&METHOD_LINE_UPS) {
             let made = base(&scene, &worlds(dragged));
             assert_eq!(made.solver, scene.solver, "{name}");
             assert_eq!(made.parameters.touch_tolerance, scene.parameters.touch_tolerance, "{name}");
@@ -223,7 +238,7 @@ mod tests {
         let mut cone = base;
         cone.parameters.cone = FrictionCone::Compressive;
         assert_eq!(titles(&[base, cone]), ["cone shifted", "cone compressive"]);
-        for LineUp { name, worlds, .. } in &LINE_UPS {
+        for LineUp { name, worlds, .. } in LINE_UPS.iter().chain(&METHOD_LINE_UPS) {
             let mut all = titles(&worlds(base));
             let count = all.len();
             all.sort();

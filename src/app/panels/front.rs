@@ -4,6 +4,7 @@ use egui::{Button, ComboBox, RichText, Slider, Ui};
 
 use super::shown_settings::{FRONT_SETTINGS, shown_settings};
 use crate::app::context::PanelContext;
+use crate::app::lessons::lesson;
 use crate::app::time_text::clock_text;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
@@ -141,8 +142,12 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some((before, start)) = context.run.wanted_and_start() else { return };
     let (index, mut settings) = (context.run.selected, before);
     let mut controls = shown_settings(context.run, &before);
-    controls.retain(|about| FRONT_SETTINGS.contains(&about.name));
-    let columns = ((ui.available_width() / LEAST_WIDTH) as usize).clamp(1, FRONT_SETTINGS.len());
+    let shown = match context.touring {
+        true => lesson(context.preferences.lesson.at).sliders,
+        false => &FRONT_SETTINGS,
+    };
+    controls.retain(|about| shown.contains(&about.name));
+    let columns = ((ui.available_width() / LEAST_WIDTH) as usize).clamp(1, shown.len());
     for row in controls.chunks(columns) {
         ui.columns(columns, |columns| {
             for (ui, about) in columns.iter_mut().zip(row) {

@@ -33,22 +33,25 @@ pub(super) struct Gallery {
 }
 
 impl Gallery {
-    /// The list of scenes, closed until it is asked for. A click opens a scene.
+    /// The list of the scenes of some groups, closed until it is asked for. A click opens a scene.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         context: &mut PanelContext<'_>,
         current: &str,
+        groups: &[SceneGroup],
     ) -> Response {
-        let list =
-            ComboBox::from_id_salt("scene").width(150.0).height(HEIGHT).selected_text(current);
+        let list = ComboBox::from_id_salt(("scene", groups.len()))
+            .width(150.0)
+            .height(HEIGHT)
+            .selected_text(current);
         let shown = list.show_ui(ui, |ui| {
             self.follow_style(ui, context.preferences);
             let side = PICTURE.x + ui.spacing().item_spacing.x;
             let room = ui.ctx().content_rect().width() - 40.0;
             let columns = ((room / side) as usize).clamp(1, MOST_COLUMNS);
             ui.set_min_width(columns as f32 * side);
-            for &group in SceneGroup::ALL {
+            for &group in groups {
                 ui.label(RichText::new(group.hint()).strong());
                 egui::Grid::new(group.hint()).num_columns(columns).show(ui, |ui| {
                     let scenes = SCENES.iter().enumerate().filter(|(_, info)| info.group == group);

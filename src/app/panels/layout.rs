@@ -29,19 +29,21 @@ pub struct Panels {
     pub(crate) pages: Pages,
     /// True while the list of keys is open.
     pub(crate) help: bool,
-    trust: TrustPanel,
+    pub(crate) trust: TrustPanel,
 }
 
 impl Panels {
     /// Draws all of them.
     pub(crate) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         fill(ui, ui.max_rect(), ui.visuals().panel_fill);
-        let has_page = context.preferences.page.is_some() && !context.preferences.folded;
+        let has_page = (context.preferences.page.is_some() || self.trust.is_open)
+            && !context.preferences.folded;
         if has_page && ui.max_rect().width() < NARROW {
             self.lesson_line(ui, context);
             self.status_line(ui, context);
             let frame = CentralPanel::default().frame(sidebar_frame());
-            frame.show(ui, |ui| self.sidebar(ui, context));
+            frame.show(ui, |ui| self.side(ui, context));
+            self.trust.follow(ui, context);
             return;
         }
         if !context.preferences.folded {
@@ -57,12 +59,13 @@ impl Panels {
             lesson_bar::light(ui, context);
         }
         grain::show_over_scene(ui, context);
-        self.trust.show(ui, context);
+        self.trust.follow(ui, context);
         help::show(ui, &mut self.help);
     }
 
-    fn lesson_line(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        bar(Panel::top("lesson")).show(ui, |ui| self.lesson_bar.show(ui, context));
+    fn lesson_line(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let lesson_bar = &mut self.lesson_bar;
+        bar(Panel::top("lesson")).show(ui, |ui| lesson_bar.show(ui, context));
     }
 
     fn status_line(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -73,14 +76,15 @@ impl Panels {
     /// All that stands around the scene.
     fn bars(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         self.lesson_line(ui, context);
-        let mut is_open = context.preferences.page.is_some();
+        let mut is_open = context.preferences.page.is_some() || self.trust.is_open;
         Panel::right("sidebar")
             .frame(sidebar_frame())
             .default_size(SIDEBAR)
             .size_range(SIDEBAR..=480.0)
-            .show_collapsible(ui, &mut is_open, |ui| self.sidebar(ui, context));
+            .show_collapsible(ui, &mut is_open, |ui| self.side(ui, context));
         if !is_open {
             context.preferences.page = None;
+            self.trust.is_open = false;
         }
         self.status_line(ui, context);
         if context.preferences.plots {
@@ -93,6 +97,14 @@ impl Panels {
         }
         bar(Panel::bottom("plot line")).show(ui, |ui| plots::header(ui, context));
         bar(Panel::bottom("front")).show(ui, |ui| front::show(ui, context));
+    }
+
+    /// The answer to "Can I trust this?" while it is open, else the pages.
+    fn side(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        match self.trust.is_open {
+            true => self.trust.show(ui, context),
+            false => self.sidebar(ui, context),
+        }
     }
 
     /// The pages, of which one is open.

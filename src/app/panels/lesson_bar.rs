@@ -1,9 +1,11 @@
 //! The bar above the scene: the list of lessons and the text of the present one.
 
-use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui};
+use egui::{Align, Align2, Button, ComboBox, Label, Layout, Rect, RichText, Ui};
 
+use super::right_answer::{self, marked};
 use crate::app::context::{PanelContext, Request};
 use crate::app::lessons::{LESSONS, Lesson, lesson};
+use crate::app::predictions::{Prediction, Question};
 use crate::app::theme;
 use crate::app::watched_run::WatchedRun;
 use crate::sim::Settings;
@@ -13,22 +15,73 @@ use crate::sim::Settings;
 pub(crate) struct LessonBar {
     /// The number of starts before that of the present lesson.
     pub loads_before: u64,
+    /// True while the last page is open.
+    pub shows_summary: bool,
 }
 
 impl LessonBar {
     /// Shows the bar.
-    pub(super) fn show(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let at = context.preferences.lesson.at.min(LESSONS.len() - 1);
         ui.horizontal(|ui| {
             let accent = theme::accent(ui.visuals().dark_mode);
             ui.label(RichText::new("Slump").heading().color(accent));
             list(ui, context, at);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ways(ui, context, at));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| self.ways(ui, context, at));
         });
-        if context.touring {
-            let is_changed = self.has_other_worlds(context.run, &LESSONS[at]);
-            ui.label(if is_changed { OTHER_WORLDS } else { LESSONS[at].watch });
+        if !context.touring {
+            self.shows_summary = false;
+            right_answer::show(ui, context.run);
+        } else if self.has_other_worlds(context.run, &LESSONS[at]) {
+            ui.label(OTHER_WORLDS);
+        } else if let Some(question) = &LESSONS[at].question {
+            prediction(ui, context, at, question);
+        } else {
+            ui.label(LESSONS[at].watch);
         }
+        if self.shows_summary {
+            summary(ui, context, &mut self.shows_summary);
+        }
+    }
+
+    /// The buttons, from the right: fold the bars, leave the lessons, go on, go back.
+    fn ways(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {
+        let dark = ui.visuals().dark_mode;
+        let hint = "Fold the bars: the scene is the window (B)";
+        let fold = ui.button("▴").on_hover_text(hint);
+        fold.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fold"));
+        context.preferences.folded |= fold.clicked();
+        if !context.touring {
+            return;
+        }
+        let hint =
+            "End the lessons; the worlds stay. They go on here when they are taken up again.";
+        let leave = ui.button("Leave").on_hover_text(hint);
+        context.note_control("leave lessons", leave.rect);
+        if leave.clicked() {
+            return context.ask(Request::LeaveLessons);
+        }
+        let is_last = at + 1 == LESSONS.len();
+        let (next, hint) = match is_last {
+            true => ("Summary ▶", "What the lessons showed"),
+            false => ("Next ▶", "The next lesson"),
+        };
+        let next = RichText::new(next).color(theme::on_accent(dark));
+        let next = ui.add(Button::new(next).fill(theme::accent(dark)));
+        context.note_control("next lesson", next.rect);
+        if next.on_hover_text(hint).clicked() {
+            self.shows_summary ^= is_last;
+            if !is_last {
+                context.ask(Request::Visit(at + 1));
+            }
+        }
+        let back = ui.add_enabled(at > 0, Button::new("◀ Back"));
+        if back.on_hover_text("The lesson before").clicked() {
+            context.ask(Request::Visit(at.saturating_sub(1)));
+        }
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            ui.add(Label::new(RichText::new(LESSONS[at].title).heading()).truncate());
+        });
     }
 
     /// True if worlds of a lesson are no longer those that it speaks of.
@@ -47,36 +100,85 @@ impl LessonBar {
     }
 }
 
-/// The buttons, from the right: fold the bars, leave the lessons, go on, go back.
-fn ways(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {
-    let dark = ui.visuals().dark_mode;
-    let hint = "Fold the bars: the scene is the window (B)";
-    let fold = ui.button("▴").on_hover_text(hint);
-    fold.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fold"));
-    context.preferences.folded |= fold.clicked();
-    if !context.touring {
+/// The question of a lesson and its two answers; once the run has ended, its result instead.
+fn prediction(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize, question: &Question) {
+    let rows = (question.rows)(&context.run.frame);
+    let result = rows.and_then(|rows| (question.result)(&rows));
+    let predicted = context.preferences.lesson.predictions.get_mut(&at);
+    if let Some((right, text)) = result {
+        let learnt = LESSONS[at].learnt;
+        let Some(predicted) = predicted else {
+            ui.label(text);
+            ui.label(learnt);
+            return;
+        };
+        let was_right = predicted.answer == right;
+        predicted.was_right = Some(was_right);
+        let said = question.answers[predicted.answer.min(1)];
+        ui.label(marked(ui, was_right, &format!("You said: {said}. {text}")));
+        ui.label(learnt);
         return;
     }
-    let hint = "End the lessons; the worlds stay. They go on here when they are taken up again.";
-    let leave = ui.button("Leave").on_hover_text(hint);
-    context.note_control("leave lessons", leave.rect);
-    if leave.clicked() {
-        return context.ask(Request::LeaveLessons);
-    }
-    let next = RichText::new("Next ▶").color(theme::on_accent(dark));
-    let next = ui.add_enabled(at + 1 < LESSONS.len(), Button::new(next).fill(theme::accent(dark)));
-    context.note_control("next lesson", next.rect);
-    let next = next.on_hover_text("The next lesson");
-    if next.clicked() {
-        context.ask(Request::Visit(at + 1));
-    }
-    let back = ui.add_enabled(at > 0, Button::new("◀ Back"));
-    if back.on_hover_text("The lesson before").clicked() {
-        context.ask(Request::Visit(at.saturating_sub(1)));
-    }
-    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-        ui.add(Label::new(RichText::new(LESSONS[at].title).heading()).truncate());
+    ui.label(LESSONS[at].watch);
+    let waits = context.run.frame.at_start() && !context.run.frame.playing;
+    let mut answer = predicted.map(|predicted| predicted.answer);
+    let mut buttons = Rect::NOTHING;
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(question.text).strong());
+        for (index, text) in question.answers.iter().enumerate() {
+            let button = Button::selectable(answer == Some(index), *text).frame_when_inactive(true);
+            let hint = "Your prediction. Choose it before you release the pile.";
+            let button = ui.add_enabled(waits, button).on_hover_text(hint);
+            buttons |= button.rect;
+            if button.clicked() {
+                answer = Some(index);
+            }
+        }
     });
+    context.note_control("answers", buttons);
+    if let Some(answer) = answer.filter(|_| waits) {
+        let prediction = Prediction { answer, was_right: None };
+        context.preferences.lesson.predictions.insert(at, prediction);
+    }
+}
+
+/// The last page: the results of the predictions, what the lessons showed, and a link to share.
+fn summary(ui: &Ui, context: &mut PanelContext<'_>, is_open: &mut bool) {
+    let predictions = context.preferences.lesson.predictions.clone();
+    let known = predictions.values().filter_map(|prediction| prediction.was_right);
+    let (right, count) = known.fold((0, 0), |(right, all), is| (right + usize::from(is), all + 1));
+    egui::Window::new("What the lessons showed")
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .collapsible(false)
+        .resizable(false)
+        .open(is_open)
+        .show(ui.ctx(), |ui| {
+            ui.set_max_width(460.0);
+            if count > 0 {
+                ui.label(format!("{right} of your {count} predictions were right."));
+            }
+            for (at, Lesson { title, learnt, .. }) in LESSONS.iter().enumerate() {
+                let title = format!("{}. {title}", at + 1);
+                let was_right = predictions.get(&at).and_then(|prediction| prediction.was_right);
+                let title = match was_right {
+                    Some(was_right) => marked(ui, was_right, &title),
+                    None => RichText::new(title),
+                };
+                ui.label(title.strong());
+                ui.label(*learnt);
+            }
+            ui.separator();
+            ui.horizontal(|ui| {
+                let hint = "A line of text that opens the present pile. Paste it into another window (Ctrl V).";
+                if ui.button("Copy a link to this pile").on_hover_text(hint).clicked() {
+                    context.ask(Request::CopyLink);
+                }
+                if ui.button("Begin again").on_hover_text("Go to lesson 1").clicked() {
+                    context.preferences.lesson.predictions.clear();
+                    context.ask(Request::Visit(0));
+                }
+            });
+        });
 }
 
 /// Lights the controls that the lesson asks for next, where all of the window is drawn.

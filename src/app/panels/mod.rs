@@ -17,6 +17,7 @@ mod lesson_bar;
 mod pages;
 mod physics;
 mod plots;
+mod right_answer;
 mod run;
 mod scene;
 mod scene_style;

@@ -10,6 +10,7 @@ use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, sp
 use crate::app::IN_BROWSER;
 use crate::app::context::PanelContext;
 use crate::app::page::Page;
+use crate::scene::SceneGroup;
 
 /// The state of the panels on the pages.
 #[derive(Default)]
@@ -44,11 +45,7 @@ impl Pages {
                 physics::show(ui, context.run);
                 ui.separator();
                 solver::show(ui, context.run);
-                // It would keep a page waiting for seconds.
-                if !IN_BROWSER {
-                    let race = &mut self.race;
-                    folded(ui, "Speed and accuracy", |ui| speed::show(ui, context.run, race));
-                }
+                folded(ui, "Expert", |ui| self.expert(ui, context));
             }
             Page::Compare => {
                 compare::show(ui, context.run);
@@ -71,6 +68,27 @@ impl Pages {
                 ui.separator();
                 run::command_line(ui, context);
             }
+        }
+    }
+}
+
+impl Pages {
+    /// Settings, scenes and comparisons for those who study solvers.
+    fn expert(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        solver::expert(ui, context.run);
+        ui.separator();
+        let hint =
+            "Each scene has a known right answer. A line at the top compares the run with it.";
+        let label = ui.label(SceneGroup::Stability.hint()).on_hover_text(hint);
+        let current = context.run.config().named().to_owned();
+        let groups = [SceneGroup::Stability];
+        let list = self.gallery.show(ui, context, &current, &groups).labelled_by(label.id);
+        context.note_control("hard scenes", list.rect);
+        compare::method_presets(ui, context.run);
+        // It would keep a page waiting for seconds.
+        if !IN_BROWSER {
+            let race = &mut self.race;
+            folded(ui, "Speed and accuracy", |ui| speed::show(ui, context.run, race));
         }
     }
 }

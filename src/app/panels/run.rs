@@ -10,8 +10,10 @@ use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
-use crate::scene::{Deposition, NewPile, SCENES};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 
+/// Scenes that are made to break methods are for experts (the page Law, solver).
+const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiments];
 /// Most grains that the panel offers; the command line takes more.
 const MOST_GRAINS: usize = 20_000;
 
@@ -83,7 +85,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
             "Drop a TOML scene, a CSV of discs or a saved run on the window to open it.",
         );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            let list = gallery.show(ui, context, &current).labelled_by(label.id);
+            let list = gallery.show(ui, context, &current, &SCENE_GROUPS).labelled_by(label.id);
             context.note_control("scenes", list.rect);
         });
     });

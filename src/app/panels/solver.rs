@@ -1,6 +1,6 @@
 //! Panel: how each step is solved, and how well that went.
 
-use egui::{CollapsingHeader, ComboBox, RichText, Ui};
+use egui::{ComboBox, RichText, Ui};
 
 use super::grain::compact;
 use crate::app::budget::{BUDGETS, Budget};
@@ -15,24 +15,31 @@ use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
-    let Some((before, start)) = run.wanted_and_start() else { return };
+    let Some(before) = run.wanted_settings() else { return };
     let mut settings = before;
     if before.stepper.uses_method()
         && let Some(world) = run.world()
     {
         budget_buttons(ui, &mut settings, &world.snapshot.surroundings);
     }
+    if settings != before {
+        run.change(index, settings);
+    }
     readings(ui, run);
-    CollapsingHeader::new("Expert").show_unindented(ui, |ui| {
-        expert(ui, &mut settings, start.settings(), start.physics().friction);
-    });
+}
+
+/// Settings that few need to change.
+pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
+    let index = run.selected;
+    let Some((before, start)) = run.wanted_and_start() else { return };
+    let mut settings = before;
+    expert_controls(ui, &mut settings, start.settings(), start.physics().friction);
     if settings != before {
         run.change(index, settings);
     }
 }
 
-/// What few need to touch.
-fn expert(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
+fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
     let stepper = settings.stepper;
     if stepper.uses_method() {
         method_controls(ui, settings, start);

@@ -1,11 +1,14 @@
-//! "Can I trust this?": one word on the run that is shown, and the list behind it: how its steps were solved, what went
-//! wrong, the slump of other initial states, and an error budget. Idle cores compute the budget once the list has been
-//! opened. They continue when the list is closed, until the settings change.
+//! "Can I trust this?": one word on the run that is shown, and a panel with the reason: a sentence, the bars of an error
+//! budget, how the steps were solved, warnings, and the slump of other initial states. Idle cores compute the budget
+//! once the panel has been opened. They continue when the panel is closed, until the settings change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use egui::{Align2, RichText, Ui};
+use egui::{
+    Align, Color32, CornerRadius, Label, Layout, Rect, RichText, ScrollArea, Sense, Stroke, Ui,
+    pos2, vec2,
+};
 
 use super::alarms::alarms;
 use super::grain::compact;
@@ -22,7 +25,7 @@ use crate::error::Error;
 use crate::live::WorldFrame;
 use crate::output::counted;
 use crate::sim::AlarmKind;
-use crate::study::{BudgetOptions, ErrorBudget, Trust, made_budget};
+use crate::study::{BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust, made_budget};
 
 /// Time that a budget may take of the idle cores, s.
 const COST_SECS: f64 = 300.0;
@@ -35,11 +38,17 @@ const FEW: f64 = 0.01;
 const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, \
     and hours for thousands.";
 
-/// The word in the status bar, and the list behind it.
+/// Width of the names of the bars, points.
+const NAMES: f32 = 150.0;
+/// Height of a bar with its spacing, and of the bar alone, points.
+const ROW: f32 = 18.0;
+const BAR: f32 = 9.0;
+
+/// The word in the status bar, and the panel behind it.
 #[derive(Default)]
-pub(super) struct TrustPanel {
-    /// True while the list is open.
-    is_open: bool,
+pub(crate) struct TrustPanel {
+    /// True while the panel is open.
+    pub is_open: bool,
     budget: Option<RunBudget>,
 }
 
@@ -47,46 +56,71 @@ pub(super) struct TrustPanel {
 struct RunBudget {
     /// What it is of: the command line that the run is made by.
     of: String,
-    /// Its verdict and paragraph.
-    told: Arc<Mutex<Option<(Trust, String)>>>,
+    /// Its answer so far.
+    told: Arc<Mutex<Option<BudgetAnswer>>>,
     work: Option<Work<()>>,
     /// Why there is none.
     failure: Option<String>,
 }
 
 impl TrustPanel {
-    /// The word on the run that is shown.
-    fn word(&self, run: &WatchedRun) -> Trust {
-        let Some(world) = run.world() else { return Trust::NotKnownYet };
+    /// The verdict on the run that is shown, and its reason in a sentence.
+    fn verdict(&self, run: &WatchedRun) -> (Trust, String) {
         const BAD: [AlarmKind; 4] = [
             AlarmKind::NotFinite,
             AlarmKind::GrainLost,
             AlarmKind::GrainLeft,
             AlarmKind::EnergyCreated,
         ];
-        let is_bad = world.alarms.iter().any(|alarm| BAD.contains(&alarm.kind));
-        let steps = world.snapshot.observables.step.max(1);
-        let unsolved = world.unconverged_steps as f64;
-        if world.failure.is_some()
-            || is_bad
-            || warning(world).is_some()
-            || unsolved > FEW * steps as f64
-        {
-            return Trust::No;
+        let Some(world) = run.world() else { return (Trust::NotKnownYet, String::new()) };
+        if let Some(failure) = &world.failure {
+            return (Trust::No, format!("The run failed: {failure}."));
         }
-        self.of_budget(run).map_or(Trust::NotKnownYet, |(trust, _)| trust)
+        if let Some(alarm) = world.alarms.iter().find(|alarm| BAD.contains(&alarm.kind)) {
+            return (Trust::No, alarm.text.to_string());
+        }
+        if let Some(warning) = warning(world) {
+            return (Trust::No, warning);
+        }
+        let (steps, unsolved) = (world.snapshot.observables.step, world.unconverged_steps);
+        if unsolved as f64 > FEW * steps.max(1) as f64 {
+            return (
+                Trust::No,
+                format!("{unsolved} of {} were not solved.", counted(steps, "step")),
+            );
+        }
+        let Some(BudgetAnswer { trust, quantity, within_text, .. }) = self.of_budget(run) else {
+            let text = match self.budget.as_ref().is_some_and(|budget| budget.work.is_some()) {
+                true => UNDER_WAY,
+                false => "Nobody has computed how much the method changes the result.",
+            };
+            return (Trust::NotKnownYet, text.into());
+        };
+        let reason = match trust {
+            Trust::Yes => format!(
+                "Neither the method nor the choice of a law changes {quantity} by more than {within_text}."
+            ),
+            Trust::Mostly => format!(
+                "The method changes {quantity} by at most {within_text}; the choice of a law may change it by more."
+            ),
+            Trust::No => format!("The method changes {quantity} by more than {within_text}."),
+            Trust::NotKnownYet => format!(
+                "More runs must show if the method changes {quantity} by more than {within_text}."
+            ),
+        };
+        (trust, reason)
     }
 
     /// What the budget says, where there is one of the present settings.
-    fn of_budget(&self, run: &WatchedRun) -> Option<(Trust, String)> {
+    fn of_budget(&self, run: &WatchedRun) -> Option<BudgetAnswer> {
         let budget = self.budget.as_ref()?;
         let told = budget.told.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
         (run.command_line().as_ref() == Some(&budget.of)).then_some(told)
     }
 
-    /// The word in the status bar, which opens the list.
+    /// The word in the status bar, which opens the panel.
     pub(super) fn button(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let trust = self.word(context.run);
+        let (trust, _) = self.verdict(context.run);
         let dark = ui.visuals().dark_mode;
         let colour = match trust {
             Trust::Yes | Trust::Mostly => theme::good(dark),
@@ -96,63 +130,61 @@ impl TrustPanel {
         let text = RichText::new(format!("Can I trust this? {}", trust.words())).color(colour);
         let button = ui.selectable_label(self.is_open, text);
         context.note_control("trust", button.rect);
-        let hint = "Is a number of this run the grains', the law's or the method's? A click opens the list.";
+        let hint = "Is a number of this run the grains', the law's or the method's? A click opens the answer.";
         self.is_open ^= button.on_hover_text(hint).clicked();
     }
 
-    /// The list, where it is open.
+    /// The panel: the reason of the verdict, the bars of the budget, and the rest below.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
-        self.follow(ui, context);
-        if !self.is_open {
-            return;
-        }
-        let mut is_open = true;
-        egui::Window::new("Can I trust this?")
-            .anchor(Align2::LEFT_BOTTOM, [12.0, -40.0])
-            .default_width(420.0)
-            .collapsible(false)
-            .resizable(false)
-            .open(&mut is_open)
-            .show(ui.ctx(), |ui| {
-                ui.set_max_width(420.0);
-                if let Some(world) = context.run.world() {
-                    for line in solved(world) {
-                        ui.label(line);
-                    }
-                }
-                // A lesson shows what goes wrong with open eyes.
-                let colour = match context.touring {
-                    true => ui.visuals().text_color(),
-                    false => theme::warning(ui.visuals().dark_mode),
-                };
-                for alarm in
-                    context.run.world().and_then(warning).into_iter().chain(alarms(context.run))
-                {
-                    ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
-                }
-                if let (Some(said), Some(world)) = (
-                    context.ensemble.said(&context.run.frame, context.run.selected),
-                    context.run.world(),
-                ) {
-                    let slump = world.snapshot.observables.slump;
-                    ui.label(format!("● This pile slumps by {slump:.3}; {said}."))
-                        .on_hover_text(context.ensemble.about(context.run.selected));
-                }
-                ui.separator();
-                self.show_budget(ui, context.run);
+        let (trust, reason) = self.verdict(context.run);
+        ui.horizontal(|ui| {
+            ui.heading(format!("Can I trust this? {}", trust.words()));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let close = ui.button("✖").on_hover_text("Close (Esc). The computation continues.");
+                self.is_open &= !close.clicked();
             });
-        self.is_open &= is_open;
+        });
+        ScrollArea::vertical().id_salt("trust").auto_shrink([false, false]).show(ui, |ui| {
+            ui.label(RichText::new(reason).strong());
+            let answer = self.of_budget(context.run);
+            if let Some(answer) = answer.as_ref().filter(|answer| !answer.effects.is_empty()) {
+                bars(ui, answer);
+            }
+            if let Some(world) = context.run.world() {
+                for line in solved(world) {
+                    ui.label(line);
+                }
+            }
+            // A lesson shows what goes wrong with open eyes.
+            let colour = match context.touring {
+                true => ui.visuals().text_color(),
+                false => theme::warning(ui.visuals().dark_mode),
+            };
+            let warnings = context.run.world().and_then(warning);
+            for alarm in warnings.into_iter().chain(alarms(context.run)) {
+                ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
+            }
+            if let (Some(said), Some(world)) = (
+                context.ensemble.said(&context.run.frame, context.run.selected),
+                context.run.world(),
+            ) {
+                let slump = world.snapshot.observables.slump;
+                ui.label(format!("● This pile slumps by {slump:.3}; {said}."))
+                    .on_hover_text(context.ensemble.about(context.run.selected));
+            }
+            ui.separator();
+            self.show_budget(ui, answer.as_ref());
+        });
     }
 
-    /// What the error budget says, or how far it is.
-    fn show_budget(&self, ui: &mut Ui, run: &WatchedRun) {
+    /// The findings of the error budget in words, or its progress.
+    fn show_budget(&self, ui: &mut Ui, answer: Option<&BudgetAnswer>) {
         if IN_BROWSER {
             let text = "A page has no idle cores: slump budget, with the command line of this run, computes its \
                 error budget.";
             ui.label(RichText::new(text).weak());
             return;
         }
-        let told = self.of_budget(run);
         let Some(budget) = &self.budget else {
             let text = "A run that went on from a file, or a scene that is no longer there, has no error budget.";
             ui.label(RichText::new(text).weak());
@@ -162,14 +194,16 @@ impl TrustPanel {
             ui.label(RichText::new(failure).weak());
             return;
         }
-        ui.label(told.as_ref().map_or(UNDER_WAY, |(_, answer)| answer));
+        if let Some(answer) = answer {
+            ui.label(&answer.text);
+        }
         if let Some(work) = &budget.work {
             work.show(ui, "Error budget", "Stop", "What was found so far stays.");
         }
     }
 
     /// Has the budget follow the run that is shown.
-    fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
+    pub(super) fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
         if let Some(budget) = &mut self.budget
             && let Some(outcome) = outcome_of_ended(&mut budget.work)
         {
@@ -193,6 +227,57 @@ impl TrustPanel {
             _ => None,
         };
     }
+}
+
+/// The effects of an error budget as bars with their intervals, the largest first, as in the picture of `slump budget`.
+fn bars(ui: &mut Ui, answer: &BudgetAnswer) {
+    let BudgetAnswer { quantity, within, within_text, effects, .. } = answer;
+    let ends = effects.iter().flat_map(|effect| effect.adds).filter(|end| end.is_finite());
+    let reach = 1.05 * ends.map(f64::abs).fold(*within, f64::max);
+    ui.label(RichText::new(format!("Effect of each change on {quantity}")).small());
+    for effect in effects {
+        bar(ui, effect, *within, reach);
+    }
+    ui.horizontal_wrapped(|ui| {
+        let mut named: Vec<&str> = Vec::new();
+        for BudgetEffect { share, colour: (red, green, blue), .. } in effects {
+            if !named.contains(share) {
+                named.push(share);
+                ui.label(RichText::new("■").small().color(Color32::from_rgb(*red, *green, *blue)));
+                ui.label(RichText::new(*share).small());
+            }
+        }
+        ui.label(RichText::new(format!("grey lines: ± {within_text}")).small().weak());
+    });
+}
+
+/// One bar: the name of the change, its effect, and its interval.
+fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
+    let BudgetEffect { share, colour: (red, green, blue), changed, adds: [mean, low, high] } =
+        effect;
+    let response = ui.horizontal(|ui| {
+        let name = Label::new(RichText::new(changed).small()).truncate();
+        ui.add_sized(vec2(NAMES, ROW), name);
+        let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+        let at = |value: f64| {
+            let part = (value.clamp(-reach, reach) / reach) as f32;
+            area.center().x + 0.5 * area.width() * part
+        };
+        let (painter, y) = (ui.painter(), area.center().y);
+        let grey = Stroke::new(1.0, ui.visuals().weak_text_color());
+        for end in [-within, within] {
+            painter.vline(at(end), area.y_range(), grey);
+        }
+        let [from, to] = [at(0.0).min(at(*mean)), at(0.0).max(at(*mean))];
+        let shape =
+            Rect::from_min_max(pos2(from, y - 0.5 * BAR), pos2(to.max(from + 1.0), y + 0.5 * BAR));
+        painter.rect_filled(shape, CornerRadius::ZERO, Color32::from_rgb(*red, *green, *blue));
+        let ink = Stroke::new(1.2, ui.visuals().text_color());
+        painter.hline(at(*low)..=at(*high), y, ink);
+        painter.vline(at(0.0), area.y_range(), Stroke::new(1.0, ink.color));
+    });
+    let text = format!("{changed} ({share}): {mean:+.3}, between {low:+.3} and {high:+.3}");
+    response.response.on_hover_text(text);
 }
 
 /// A warning of the time step of a world.
@@ -249,7 +334,7 @@ fn begin(ui: &Ui, context: &PanelContext<'_>, of: String, config: Config) -> Run
         cost_secs: COST_SECS,
         shard: None,
     };
-    let told: Arc<Mutex<Option<(Trust, String)>>> = Arc::default();
+    let told: Arc<Mutex<Option<BudgetAnswer>>> = Arc::default();
     let states = context.ensemble.folder();
     let to = Arc::clone(&told);
     let work = Work::start(ui.ctx(), Vec::new(), move |_: Vec<()>, reporter| {

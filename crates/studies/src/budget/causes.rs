@@ -1,5 +1,6 @@
 //! Possible causes of an effect on a result: the causes that can matter in a scene, and the change that tests each.
 
+use crate::chart::{PALETTE, Rgb};
 use crate::fracture_work::{fracture_work, with_fracture_work};
 use crate::scene::{Deposition, NewPile, Scene};
 use crate::sim::{Settings, Stepper};
@@ -25,6 +26,15 @@ impl Share {
             Self::Law => "law",
             Self::Method => "method",
         }
+    }
+
+    /// Colour in pictures.
+    pub(crate) fn colour(self) -> Rgb {
+        PALETTE[match self {
+            Self::Grains => 3,
+            Self::Law => 2,
+            Self::Method => 1,
+        }]
     }
 }
 

@@ -23,7 +23,7 @@ use self::answer::budget_of;
 use self::causes::variants;
 use self::collect::{BudgetEnd, Limits, Ran, SeriesRun, collect};
 use self::quantity::{BudgetQuantity, Window};
-pub use self::rows::Trust;
+pub use self::rows::{BudgetAnswer, BudgetEffect, Trust};
 use self::rows::{Design, QuantityBudget};
 use self::starts::{RunValues, Starts, run, said_of};
 use crate::config::{Config, joined};
@@ -72,9 +72,9 @@ pub struct ErrorBudget {
 }
 
 impl ErrorBudget {
-    /// The verdict on the first quantity, and its answer in words.
-    pub fn first_answer(&self) -> Option<(Trust, String)> {
-        self.quantities.first().map(|one| (one.trust, one.answer.clone()))
+    /// The answer on the first quantity.
+    pub fn first_answer(&self) -> Option<BudgetAnswer> {
+        self.quantities.first().map(QuantityBudget::for_window)
     }
 
     /// The budget in the form of `budget.json`.

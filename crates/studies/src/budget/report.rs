@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::ErrorBudget;
 use super::causes::{Share, short};
-use super::rows::{CauseRow, QuantityBudget};
-use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points};
+use super::rows::QuantityBudget;
+use crate::chart::{Axis, Chart, INK, Layer, Look, Point, Sheet, points};
 use crate::error::Result;
 use crate::harness::{ReportTable, write_sheet};
 use crate::output::write_file;
@@ -82,20 +82,10 @@ pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
     ReportTable::new("budget", columns, rows)
 }
 
-fn colour(share: Share) -> Rgb {
-    PALETTE[match share {
-        Share::Grains => 3,
-        Share::Law => 2,
-        Share::Method => 1,
-    }]
-}
-
 /// A bar chart of the causes, the largest effect first, next to a chart of the tested time steps by cost and remaining
 /// error.
 fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
-    let mut rows: Vec<(&CauseRow, [f64; 3])> =
-        one.causes.iter().filter_map(|row| Some((row, row.adds?))).collect();
-    rows.sort_by(|(_, one), (_, other)| other[0].abs().total_cmp(&one[0].abs()));
+    let rows = one.effects();
     let reach = rows.iter().flat_map(|(_, ends)| *ends).map(f64::abs).filter(|end| end.is_finite());
     let reach = 1.05 * reach.fold(one.within, f64::max);
     let unit = if one.unit.is_empty() { String::new() } else { format!(" ({})", one.unit) };
@@ -121,7 +111,7 @@ fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
             })
             .collect();
         if !bars.is_empty() {
-            chart.layers.push(Layer::curve(name, bars, colour(share), Look::Bars));
+            chart.layers.push(Layer::curve(name, bars, share.colour(), Look::Bars));
         }
     }
     for end in [-one.within, one.within] {
@@ -160,7 +150,7 @@ fn by_cost(one: &QuantityBudget, label: &str) -> Option<Chart> {
         let line = points([(0.8, end), (1.3 * most, end)]);
         chart.layers.push(Layer::quiet("within", line, INK, Look::Dashes(1)));
     }
-    chart.layers.push(Layer::quiet("time step", tried, colour(Share::Method), Look::LineAndDots));
+    chart.layers.push(Layer::quiet("time step", tried, Share::Method.colour(), Look::LineAndDots));
     chart.width = 0.55;
     Some(chart)
 }

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::causes::{Cause, Share, Variant};
+use super::causes::{Cause, Share, Variant, short};
+use crate::chart::Rgb;
 
 /// The effect of one change on the value.
 #[derive(Clone, Debug, Serialize)]
@@ -76,6 +77,36 @@ pub(crate) struct QuantityBudget {
     pub causes: Vec<CauseRow>,
 }
 
+/// The answer of a budget on one quantity, for a window.
+#[derive(Clone, Debug)]
+pub struct BudgetAnswer {
+    /// Verdict.
+    pub trust: Trust,
+    /// Name of the quantity.
+    pub quantity: String,
+    /// Largest acceptable effect of the method, in the unit of the quantity.
+    pub within: f64,
+    /// Largest acceptable effect of the method in words, with its unit.
+    pub within_text: String,
+    /// Everything that was found, in words.
+    pub text: String,
+    /// The known effects, the largest first.
+    pub effects: Vec<BudgetEffect>,
+}
+
+/// The effect of one change on a quantity.
+#[derive(Clone, Debug)]
+pub struct BudgetEffect {
+    /// The part of the budget that it belongs to: grains, law or method.
+    pub share: &'static str,
+    /// Colour of this part in pictures.
+    pub colour: Rgb,
+    /// The change.
+    pub changed: String,
+    /// Effect and both ends of its interval, in the unit of the quantity.
+    pub adds: [f64; 3],
+}
+
 /// Everything in a budget except its runs.
 pub(super) struct Design<'a> {
     pub variants: &'a [Variant],
@@ -101,6 +132,32 @@ pub(super) fn is_seen([_, low, high]: [f64; 3]) -> bool {
 }
 
 impl QuantityBudget {
+    /// The causes with a known effect, the largest first.
+    pub(super) fn effects(&self) -> Vec<(&CauseRow, [f64; 3])> {
+        let mut rows: Vec<(&CauseRow, [f64; 3])> =
+            self.causes.iter().filter_map(|row| Some((row, row.adds?))).collect();
+        rows.sort_by(|(_, one), (_, other)| other[0].abs().total_cmp(&one[0].abs()));
+        rows
+    }
+
+    /// The answer, for a window.
+    pub(super) fn for_window(&self) -> BudgetAnswer {
+        let effect = |(row, adds): (&CauseRow, [f64; 3])| BudgetEffect {
+            share: row.share.word(),
+            colour: row.share.colour(),
+            changed: row.changed.clone(),
+            adds,
+        };
+        BudgetAnswer {
+            trust: self.trust,
+            quantity: self.quantity.clone(),
+            within: self.within,
+            within_text: self.with_unit(&short(self.within)),
+            text: self.answer.clone(),
+            effects: self.effects().into_iter().map(effect).collect(),
+        }
+    }
+
     /// The smallest time step with a value, or else the smallest time step.
     pub(super) fn smallest_step(&self) -> Option<&CauseRow> {
         let of_steps = || self.causes.iter().filter(|row| row.kind == Cause::TimeStep);

@@ -5,20 +5,25 @@
 mod maps;
 mod motion;
 mod rest;
+mod seen;
 mod table;
 
 use std::sync::LazyLock;
 
+use glam::DVec2;
+
 pub use maps::{contraction_of_column, count_of_maps, maps};
+pub use seen::SeenError;
 pub use table::{StabilityCell, StabilityTable, StabilityVerdict, picture};
 
 use crate::config::{Config, SceneSource};
 use crate::contact::Numbering;
 use crate::error::{Error, Result};
 use crate::harness::Change;
-use crate::scene::{Preset, Scene};
-use crate::sim::{Simulation, Stepper};
+use crate::scene::{Preset, Scene, SceneInfo};
+use crate::sim::{Simulation, Snapshot, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverChanges, SolverSettings};
+use crate::world::World;
 
 /// A scene that is made to break methods, with its measure of error.
 #[derive(Clone, Copy, Debug)]
@@ -34,9 +39,56 @@ pub struct Challenge {
     /// A method holds up to the first error, degrades up to the second, and fails above it.
     limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
+    /// The right answer of the scene with the same name in a sentence, and the error of a moment of it.
+    seen: Option<(&'static str, SeenError)>,
+}
+
+/// The verdict on one moment of a scene that is made to break methods.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenVerdict {
+    /// Name and unit of the error.
+    pub name: &'static str,
+    /// The error; 0 for the right answer.
+    pub error: f64,
+    /// The largest error of a method that holds.
+    pub limit: f64,
+}
+
+impl SeenVerdict {
+    /// True if the moment agrees with the right answer.
+    pub fn is_right(&self) -> bool {
+        self.error <= self.limit
+    }
 }
 
 impl Challenge {
+    /// The challenge that knows the right answer of the scene with that name.
+    pub fn seen_in(scene: &str) -> Option<&'static Self> {
+        let info = SceneInfo::named(scene)?;
+        let is_of =
+            |challenge: &&Self| challenge.name == info.name || info.also.contains(&challenge.name);
+        CHALLENGES.iter().filter(is_of).find(|challenge| challenge.seen.is_some())
+    }
+
+    /// The right answer of its scene in a sentence.
+    pub fn right_answer(&self) -> Option<&'static str> {
+        self.seen.map(|(right, _)| right)
+    }
+
+    /// The verdict on a moment of a run of its scene that began with `start`; nothing if it is too early.
+    pub fn verdict(&self, start: &Simulation, now: &Snapshot) -> Option<SeenVerdict> {
+        let (_, SeenError { name, of }) = self.seen.filter(|_| now.observables.step > 0)?;
+        let is_whole = start.world().grains.len() == now.grains.len();
+        let error = of(start, now).filter(|_| is_whole)?;
+        // NaN is as far from the right answer as can be.
+        let error = if error.is_nan() { f64::INFINITY } else { error };
+        Some(SeenVerdict { name, error, limit: self.limits[0] })
+    }
+
+    const fn seen(self, right: &'static str, error: SeenError) -> Self {
+        Self { seen: Some((right, error)), ..self }
+    }
+
     /// The challenge with that name.
     ///
     /// # Errors
@@ -78,47 +130,64 @@ const fn challenge(
     limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
 ) -> Challenge {
-    Challenge { name, driver, quick, further: &[], limits, error }
+    Challenge { name, driver, quick, further: &[], limits, error, seen: None }
 }
 
 /// All challenges.
 pub static CHALLENGES: [Challenge; 28] = [
     challenge("column", "discs", &[5.0, 20.0, 80.0, 200.0], [0.01, 0.2], rest::column)
         .further(&[500.0]),
-    challenge("sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], [0.01, 0.2], rest::sag),
-    challenge("mass-ratio", MASSES, RATIOS, [0.01, 0.2], rest::mass_ratio),
+    challenge("sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], [0.01, 0.2], rest::sag)
+        .seen("The floor carries the column, and no disc sinks.", seen::MOVED),
+    challenge("mass-ratio", MASSES, RATIOS, [0.01, 0.2], rest::mass_ratio)
+        .seen("The light disc carries the heavy disc, and neither sinks.", seen::MOVED),
     challenge(
         "size-ratio",
         "ratio of radii",
         &[2.0, 5.0, 20.0, 100.0],
         [0.01, 0.2],
         rest::size_ratio,
-    ),
-    challenge("chain", TIME_STEP, STEPS, [0.02, 0.2], rest::chain),
-    challenge("cantilever", TIME_STEP, STEPS, [0.1, 1.0], rest::cantilever),
-    challenge("bridge", TIME_STEP, STEPS, [0.1, 1.0], rest::bridge),
+    )
+    .seen("The small discs carry the large disc, and none moves.", seen::MOVED),
+    challenge("chain", TIME_STEP, STEPS, [0.02, 0.2], rest::chain)
+        .seen("The chain holds: its Bond is 1.2 times the one that breaks it.", seen::MOVED),
+    challenge("cantilever", TIME_STEP, STEPS, [0.1, 1.0], rest::cantilever)
+        .seen("The two rows hold at the wall.", seen::MOVED),
+    challenge("bridge", TIME_STEP, STEPS, [0.1, 1.0], rest::bridge)
+        .seen("The two rows hold between the walls.", seen::MOVED),
     challenge("shock", "tolerance (m/s)", &[1e-12, 1e-6, 2.2e-3], [0.01, 0.1], rest::shock),
-    challenge("overlap", "overlap (d)", &[0.01, 0.1, 0.5], [0.05, 1.1], rest::overlap),
-    challenge("squeeze", "strain", &[1e-4, 1e-2, 5e-2], [1e-3, 0.1], rest::squeeze),
-    challenge("moving-walls", TIME_STEP, &[5e-4, 3e-3, 2e-2], [0.05, 0.5], rest::moving_walls),
+    challenge("overlap", "overlap (d)", &[0.01, 0.1, 0.5], [0.05, 1.1], rest::overlap)
+        .seen("The overlap disappears without a jump of the discs.", seen::OVERLAP),
+    challenge("squeeze", "strain", &[1e-4, 1e-2, 5e-2], [1e-3, 0.1], rest::squeeze)
+        .seen("The discs come to rest, although the box is too small for them.", seen::RESTLESS),
+    challenge("moving-walls", TIME_STEP, &[5e-4, 3e-3, 2e-2], [0.05, 0.5], rest::moving_walls)
+        .seen("The walls push each disc to its one possible place.", seen::PRESSED),
     challenge("friction-limit", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::friction_limit),
-    challenge("arch", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::arch),
-    challenge("repose", TIME_STEP, LONG_STEPS, [0.01, 0.2], rest::repose),
+    challenge("arch", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::arch)
+        .seen("The arch stands: its friction is 1.05 times the least that holds it.", seen::MOVED),
+    challenge("repose", TIME_STEP, LONG_STEPS, [0.01, 0.2], rest::repose)
+        .seen("The heap stands still.", seen::MOVED),
     challenge("repose-angle", "rows", &[2.0, 6.0, 12.0], [0.02, 0.2], rest::repose_angle)
-        .further(&[24.0]),
+        .further(&[24.0])
+        .seen("The heap stands still: up to 30 degrees it holds.", seen::MOVED),
     challenge("rest", "steps", &[300.0, 10000.0], [0.01, 0.2], rest::rest).further(&[1e5]),
-    challenge("bounce", "restitution", &[0.0, 0.5, 0.9, 1.0], [0.01, 0.1], motion::bounce),
-    challenge("newtons-cradle", "balls", &[2.0, 3.0, 20.0], [0.05, 0.5], motion::newtons_cradle),
-    challenge("thin-wall", "travel a step (d)", &[0.4, 1.0, 4.0], [0.0, 0.3], motion::thin_wall),
+    challenge("bounce", "restitution", &[0.0, 0.5, 0.9, 1.0], [0.01, 0.1], motion::bounce)
+        .seen("Each bounce leaves ρ² of the energy.", seen::BOUNCED),
+    challenge("newtons-cradle", "balls", &[2.0, 3.0, 20.0], [0.05, 0.5], motion::newtons_cradle)
+        .seen("The last ball flies off alone, as fast as the first ball came.", seen::LAST_BALL),
+    challenge("thin-wall", "travel a step (d)", &[0.4, 1.0, 4.0], [0.0, 0.3], motion::thin_wall)
+        .seen("The disc does not pass the wall.", seen::THROUGH),
     challenge(
         "far",
         "distance from the origin (d)",
         &[1e3, 1e6, 1e9, 1e13],
         [0.01, 0.2],
         motion::far,
-    ),
+    )
+    .seen("The heap stands still, as at the origin.", seen::MOVED),
     challenge("shuffle", "tolerance", &[1e-9, 1e-6, 1e-3, 1e-1], [1e-4, 0.1], motion::shuffle),
-    challenge("lift-off", MASSES, RATIOS, [1e-3, 0.1], motion::lift_off),
+    challenge("lift-off", MASSES, RATIOS, [1e-3, 0.1], motion::lift_off)
+        .seen("The column carries the heavy disc, and no disc jumps.", seen::KINETIC),
     challenge(
         "time-step-switch",
         "factor on 2e-4 s",
@@ -134,10 +203,16 @@ pub static CHALLENGES: [Challenge; 28] = [
         motion::sliders,
     )
     .further(&[60.0]),
-    challenge("dilatancy", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::dilatancy).further(&[2e-2]),
-    challenge("blow", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::blow),
+    challenge("dilatancy", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::dilatancy)
+        .further(&[2e-2])
+        .seen("Friction does not lift the disc: it slides on the floor.", seen::OFF_LEVEL),
+    challenge("blow", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::blow).seen(
+        "Friction takes μ times the impulse of the blow, in the step of the blow.",
+        seen::BLOWN,
+    ),
     challenge("hyperstatic", "displacement (d)", &[1e-4], [0.01, 0.2], rest::hyperstatic)
-        .further(&[1e-6]),
+        .further(&[1e-6])
+        .seen("The discs stay at rest.", seen::MOVED),
     challenge("size", "grains", &[138.0, 500.0], [1e-3, 0.1], rest::size)
         .further(&[2000.0, 10000.0]),
 ];
@@ -223,17 +298,25 @@ fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
 
 /// The longest displacement of any grain since `scene`, in d.
 fn longest_way(simulation: &Simulation, scene: &Scene) -> f64 {
-    let now = &simulation.world().grains.positions;
-    let ways = scene.grains.iter().zip(now).map(|(grain, now)| grain.position.distance(*now));
-    ways.fold(0.0, f64::max) / scene.mean_diameter
+    let now = simulation.world().grains.positions.iter().copied();
+    longest_way_to(scene.grains.iter().map(|grain| grain.position).zip(now), scene.mean_diameter)
+}
+
+/// The longest displacement, in d, among pairs of places before and now.
+fn longest_way_to(places: impl Iterator<Item = (DVec2, DVec2)>, diameter: f64) -> f64 {
+    places.map(|(before, now)| before.distance(now)).fold(0.0, f64::max) / diameter
 }
 
 /// √(2 E_kin/M), in √(g d).
 fn jitter(simulation: &Simulation) -> f64 {
-    let world = simulation.world();
+    jitter_of(simulation.world(), simulation.observables().kinetic_energy)
+}
+
+/// √(2 E_kin/M) of a world with this kinetic energy (J), in √(g d).
+fn jitter_of(world: &World, kinetic_energy: f64) -> f64 {
     let mass: f64 = world.grains.masses.iter().sum();
     let scale = world.gravity.magnitude() * world.mean_diameter;
-    (2.0 * simulation.observables().kinetic_energy / (mass * scale)).sqrt()
+    (2.0 * kinetic_energy / (mass * scale)).sqrt()
 }
 
 /// m g d of the first disc, J.

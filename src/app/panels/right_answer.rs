@@ -1,0 +1,50 @@
+//! The right answer of a scene that is made to break methods, and the verdict on each world.
+
+use egui::{RichText, Ui};
+
+use super::grain::compact;
+use crate::app::theme;
+use crate::app::watched_run::WatchedRun;
+use crate::scene::built_in;
+use crate::sim::Settings;
+use crate::study::stability::Challenge;
+
+/// Settings that the right answer depends on. The others belong to the method.
+const PHYSICS: [&str; 6] = ["bond", "bond-acceleration", "tilt", "rho", "mu", "cone"];
+
+/// Shows the right answer and the verdicts; nothing for other scenes.
+pub(super) fn show(ui: &mut Ui, run: &WatchedRun) {
+    let Some(start) = run.frame.start.as_ref().filter(|start| start.tally.steps == 0) else {
+        return;
+    };
+    let config = run.config();
+    let Some(challenge) = Challenge::seen_in(config.named()) else { return };
+    let (Some(right), Ok(scene)) = (challenge.right_answer(), built_in(config.named())) else {
+        return;
+    };
+    let own = scene.settings();
+    let has_own_physics =
+        |settings: &Settings| PHYSICS.iter().all(|name| settings.get(name) == own.get(name));
+    ui.horizontal_wrapped(|ui| {
+        ui.label(format!("Right answer: {right}"));
+        for (index, world) in run.frame.worlds.iter().enumerate() {
+            let number = if run.compares() { format!("{}: ", index + 1) } else { String::new() };
+            if !has_own_physics(&world.controls.settings) {
+                let text = format!("{number}unknown, because a parameter of the law was changed.");
+                ui.label(RichText::new(text).weak());
+            } else if let Some(verdict) = challenge.verdict(&start.simulation, &world.snapshot) {
+                let (name, error) = (verdict.name, compact(verdict.error));
+                let text = format!("{number}{name} {error} (at most {})", compact(verdict.limit));
+                ui.label(marked(ui, verdict.is_right(), &text));
+            }
+        }
+    });
+}
+
+/// A text with a mark that says if it is right.
+pub(super) fn marked(ui: &Ui, is_right: bool, text: &str) -> RichText {
+    let dark = ui.visuals().dark_mode;
+    let (mark, colour) =
+        if is_right { ("✓", theme::good(dark)) } else { ("✗", theme::warning(dark)) };
+    RichText::new(format!("{mark} {text}")).color(colour)
+}
