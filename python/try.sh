@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The Python package as a user installs it, in an environment of its own, and its tests: python/try.sh [PYTEST ARGUMENTS].
-# It shares the program's target folder, and with it most of what is compiled. The tests hold it against the program,
-# which is to be built first: cargo build --release --no-default-features. Another Python: PYTHON=python3.13 python/try.sh
+# Installs the Python package as a user does, in its own environment, and runs its tests: python/try.sh [PYTEST ARGUMENTS].
+# It shares the program's target folder, and so most compiled crates. The tests compare it with the program, which must be
+# built first: cargo build --release --no-default-features. Another Python: PYTHON=python3.13 python/try.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
@@ -9,7 +9,7 @@ export SLUMP_PROGRAM=${SLUMP_PROGRAM:-$CARGO_TARGET_DIR/release/slump}
 python=${PYTHON:-python3}
 environment=$CARGO_TARGET_DIR/python-$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 
-# What is compiled has neither window nor GPU.
+# The compiled module has neither window nor GPU.
 crates=$(cargo tree --locked -p slump-python -e normal,build --prefix none | sed 's/ (.*//' | sort -u)
 if grep -E '^(egui|wgpu|winit) ' <<<"$crates"; then
     echo "python/Cargo.toml must leave these out, with all that they need: default-features = false" >&2

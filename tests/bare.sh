@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# The README's two commands on a bare machine: tests/bare.sh [FOLDER].
+# Runs the README's two commands on a minimal machine: tests/bare.sh [FOLDER].
 #
 # Makes a minimal Debian 12 root in FOLDER (target/bare by default), with Rust, a C linker and git from Debian's packages and
 # nothing else: no ffmpeg, no graphics driver, no Python. Clones the last commit into it, runs both commands there and prints
-# how long each took. Needs root and mmdebstrap (apt install mmdebstrap), and some 10 GB.
+# how long each took. Needs root, mmdebstrap (apt install mmdebstrap), and about 10 GB.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$(realpath -m "${1:-target/bare}")
@@ -21,7 +21,7 @@ mkdir -p "$root"
 
 mmdebstrap --quiet --variant=minbase --include=ca-certificates,cargo-web,gcc,git,libc6-dev,rustc-web bookworm "$root"
 touch "$root/bare-root"
-# The names of servers, and the certificates that this machine trusts.
+# Name resolution, and the certificates that this machine trusts.
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 rm -rf "$root/etc/ssl/certs"
 cp -rL /etc/ssl/certs "$root/etc/ssl/"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Holds builds of the program for several compilers and systems against each other: every one must come to the same state and
-# the same table of observables, to the last bit, in five runs.
+# Compares builds of the program for several compilers and systems: all must reach the same state and the same table of
+# observables, bit for bit, in five runs.
 #
 #   tests/bits.sh PROGRAM PROGRAM …
 #
-# A PROGRAM is a path, or a path with the command that runs it before it, in quotes: "qemu-aarch64 -L /usr/aarch64-linux-gnu
+# A PROGRAM is a path, or in quotes the command that runs it and the path: "qemu-aarch64 -L /usr/aarch64-linux-gnu
 # slump", "wine slump.exe".
 set -euo pipefail
 [ $# -gt 1 ] || { echo "usage: tests/bits.sh PROGRAM PROGRAM …" >&2; exit 2; }
@@ -18,7 +18,7 @@ for program in "$@"; do
     number=$((number + 1))
     for run in "${!runs[@]}"; do
         folder=$out/$number-$run
-        # Wine wants a path of its own below Z:, and takes this one as it is; words are meant to be split.
+        # Wine expects paths below Z:, but accepts this one. The words must be split.
         # shellcheck disable=SC2086
         $program run ${runs[run]} --times 0 --renderer cpu --size 64x64 --frames "$folder" 2>"$out/log" ||
             { cat "$out/log" >&2; echo "tests/bits.sh: $program fails: run ${runs[run]}" >&2; exit 1; }

@@ -1,5 +1,5 @@
-# For scripts that drive the real window: a display of any number that is free, a folder for all that they write, and ways to
-# ask the window for what it exports. They source it after `program` is set; `window` is theirs to set.
+# For scripts that drive the real window: a display with a free number, a folder for their files, and functions that read
+# the state that the window exports. A script sets `program` before it sources this file, and sets `window` itself.
 
 work=$(mktemp -d)
 state=$work/state.json
@@ -22,7 +22,7 @@ fail() {
     exit 1
 }
 
-# screen WIDTHxHEIGHT: a display of that size in place of the one before.
+# screen WIDTHxHEIGHT: replaces the display by one of this size.
 screen() {
     [ -z "$server" ] || kill "$server" 2>/dev/null || true
     rm -f "$work/display"
@@ -33,10 +33,10 @@ screen() {
     export DISPLAY=:$(cat "$work/display")
 }
 
-# value EXPRESSION: a value of the exported state; s is the state.
+# value EXPRESSION: prints a value of the exported state s.
 value() { python3 -c "import json,sys; s=json.load(open('$state')); print($1)"; }
 
-# wait_for WHAT EXPRESSION: until the expression is true.
+# wait_for WHAT EXPRESSION: waits until the expression is true.
 wait_for() {
     for _ in $(seq 300); do
         if [ -s "$state" ] && [ "$(value "$2" 2>/dev/null)" = True ]; then return; fi
@@ -46,5 +46,5 @@ wait_for() {
     fail "waited in vain for $1"
 }
 
-# at CONTROL PART: the pixel at a part of the width of a control.
+# at CONTROL PART: prints the pixel at this fraction of the width of a control.
 at() { value "'%d %d' % (lambda c: (c[0] + $2 * (c[2] - c[0]), (c[1] + c[3]) / 2))(s['controls']['$1'])"; }

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""What a scheduler, a full disk or a closed terminal does to long work, some 300 times over.
+"""Interrupts long work about 300 times, as a scheduler, a full disk or a closed terminal would.
 
 tests/faults.py target/release/slump [FAULTS] > table
 
-Signals at random times x frames, GIF, sweep, reproduce, chart; a file system that is full (needs root, else
-left out); folders that are read-only or missing; streams that are closed or full; two programs at one folder. After each fault everything
-that was finished must be there and readable, nothing half-written under a final name, and the same command must
-go on. Of sweep, reproduce and chart each finished run counts for itself: its record, and its course where it has
-one, must be the same afterwards, and it must not be computed again. Prints a line for each kind of fault: how
-many, how many finished runs were there, and what was lost. Exit code 1 where anything was.
+Signals at random times hit frames, GIF, sweep, reproduce and chart. Other faults: a full file system (needs root,
+otherwise it is left out), folders that are read-only or missing, streams that are closed or full, and two programs
+that use one folder. After each fault all finished results must exist and be readable, no file with a final name may
+be incomplete, and the same command must resume the work. For sweep, reproduce and chart, the record and the series
+of each finished run must be unchanged, and no finished run may be computed again. Prints a line for each kind of
+fault: their number, the number of finished runs, and the losses. Exit code 1 if there was any loss.
 """
 import collections, csv, glob, json, os, random, shutil, signal, subprocess, sys, tempfile, time
 
@@ -27,7 +27,7 @@ interval = 0.01
 grains = [0, 1, 2]
 """
 ENDINGS = {".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".json": b"}\n", ".csv": b"\n", ".md": b"\n"}
-# Figures of one study with courses, in a few seconds.
+# Figures of one study that stores series, in a few seconds.
 FIGURES = ["reproduce", "fig8", "cradle-choices", "--quick"]
 CHART = ["chart", "--quick", "--only", "simulation"]
 random.seed(1)
@@ -35,7 +35,7 @@ counts, losses, finished = collections.Counter(), collections.defaultdict(list),
 
 
 def heed_signals():
-    """What is ignored here, as under nohup, the program ignores as well."""
+    """Restore default handlers: the program would inherit ignored signals, as under nohup."""
     for number in SIGNALS.values():
         if number != signal.SIGKILL:
             signal.signal(number, signal.SIG_DFL)
@@ -46,7 +46,7 @@ def start(*words):
 
 
 def hit(run, name, after, before):
-    """Sends a signal at a random time; the exit code."""
+    """Send a signal at a random time and return the exit code."""
     time.sleep(random.uniform(after, before))
     run.send_signal(SIGNALS[name])
     try:
@@ -63,8 +63,8 @@ def note(kind, wrong):
 
 
 def half_written(out):
-    """Files under their final names that do not end as such files do. Journals and tables of observables are
-    written as they come."""
+    """Files with final names that do not end as their format requires. Journals and tables of observables grow during
+    the run and are not checked."""
     wrong = []
     for path in glob.glob(os.path.join(glob.escape(out), "**", "*.*"), recursive=True):
         ending = ENDINGS.get(os.path.splitext(path)[1])
@@ -76,7 +76,7 @@ def half_written(out):
 
 
 def check_folder(out, killed):
-    """What is wrong with a folder of frames."""
+    """Faults of a folder of frames."""
     wrong = half_written(out)
     left = [name for name in os.listdir(out) if "tmp" in name] if os.path.isdir(out) else []
     if left and not killed:
@@ -86,7 +86,7 @@ def check_folder(out, killed):
         with open(table, newline="") as file:
             rows = list(csv.reader(file))
         whole = [row for row in rows if len(row) == len(rows[0])]
-        # The last row of a process that was killed may be cut; no other one.
+        # Only the last row may be cut, and only if the process was killed.
         if len(whole) < len(rows) - (1 if killed else 0):
             wrong.append("rows that are cut")
         steps = [int(row[0]) for row in whole[1:]]
@@ -135,10 +135,10 @@ def name_of(line):
 
 
 def kept_in(out):
-    """The finished runs of a folder: the whole lines of each journal, and the bytes of their courses."""
+    """The finished runs of a folder: the complete lines of each journal, and the bytes of their series."""
     kept = {}
     for path in glob.glob(os.path.join(out, "**", "*.jsonl"), recursive=True):
-        # A kill can leave a half line at the end.
+        # A kill can leave an incomplete last line.
         lines = open(path, "rb").read().split(b"\n")[:-1]
         courses = {}
         for line in lines:
@@ -154,7 +154,7 @@ def number_of(kept):
 
 
 def compare(before, after):
-    """What of the runs that were finished before is not so any more."""
+    """Differences between the finished runs before and after."""
     wrong = []
     for path, (lines, courses) in before.items():
         now, courses_now = after.get(path, ([], {}))
@@ -170,13 +170,13 @@ def compare(before, after):
 
 
 def outcome_of(out):
-    """What finished work of that kind comes to, but for reports, which have times in them."""
+    """Results of finished work, without reports, because these contain times."""
     names = [name for name in sorted(os.listdir(out)) if name.endswith((".csv", ".svg", ".png"))]
     return {name: open(os.path.join(out, name), "rb").read() for name in names}
 
 
 def resumed(folder, name, words, longest, whole):
-    """A sweep or a set of figures that is interrupted, and then runs to its end."""
+    """Interrupt a sweep or a set of figures, then run it to its end."""
     out = os.path.join(folder, "out")
     code = hit(start(*words, "--out", out), name, 0.01, longest)
     before, wrong = kept_in(out), half_written(out)
@@ -192,7 +192,7 @@ def resumed(folder, name, words, longest, whole):
 
 
 def chart_once(name, out):
-    """A chart that is interrupted again and again: each time it goes on where it was."""
+    """Interrupt a chart repeatedly; each start must resume it."""
     run = start(*CHART, "--out", out)
     before = kept_in(out)
     code = hit(run, name, 0.1, 6.0)
@@ -241,15 +241,15 @@ TABLES = ["--headless", "--scene", "cradle", "--duration", "4", "--data-format",
 
 
 def files_of(out):
-    """Tables and pictures, which are the same whenever they are made, but for the command line at their heads."""
+    """Tables and pictures. They depend only on the work, except for the command line in the head of a table."""
     paths = glob.glob(os.path.join(out, "**", "*.*"), recursive=True)
     read = lambda path: [line for line in open(path, "rb") if not line.startswith(b"# command: ")]
     return {os.path.relpath(path, out): read(path) for path in paths if path.endswith((".csv", ".png"))}
 
 
 def two_programs(folder, works):
-    """Two programs at one folder, the second at any time: whoever ends well has all of its work there, unless the other was
-    told to clear the folder and came when that one had ended."""
+    """Two programs use one folder; the second starts at a random time. A program that ends with success must have all of
+    its results there, unless the other one clears the folder and started after the first had ended."""
     out = os.path.join(folder, "out")
     kinds = random.choices(list(works), k=2)
     clears = [random.random() < 0.5 for _ in kinds]

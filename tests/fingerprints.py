@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Fingerprints of some 8,000 short runs: scenes x steppers x methods x remedies x numbers, a line each.
+"""Fingerprints of about 8,000 short runs: scenes x steppers x methods x remedies x numbers, one line per run.
 
 tests/fingerprints.py target/release/slump > table        # all of them
 tests/fingerprints.py target/release/slump 17 > table     # every 17th
 
-Two builds that step bitwise alike print the same table: make one before a change that is to alter no
-trajectory and one after it, and compare them with diff.
+Two builds with bitwise equal trajectories print the same table. To check a change that must not alter trajectories,
+make a table before and after it, and compare them with diff.
 """
 import csv, hashlib, itertools, os, subprocess, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor

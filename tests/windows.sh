@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# The program for Windows, under wine: it computes, saves, continues, keeps two runs apart and opens its window.
+# Tests the program for Windows under wine: it computes, saves, resumes, keeps two runs apart and opens its window.
 #
-#   tests/windows.sh PROGRAM.exe [FOLDER]         tries it; a screenshot of the window goes to FOLDER (target/windows)
+#   tests/windows.sh PROGRAM.exe [FOLDER]         tests it; a screenshot of the window goes to FOLDER (target/windows)
 #   tests/windows.sh --run PROGRAM.exe ARGUMENTS  starts it
 #
-# Of Debian: wine wine64 gcc-mingw-w64-x86-64 xvfb xdotool imagemagick mesa-vulkan-drivers.
+# Needs Debian's packages wine wine64 gcc-mingw-w64-x86-64 xvfb xdotool imagemagick mesa-vulkan-drivers.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 export WINEPREFIX=$here/target/wine WINEDEBUG=-all WINEDLLOVERRIDES="mscoree=;mshtml="
 
-# Wine 8 lacks the library that Rust's draws random numbers from. Windows has it, so nobody is given this one.
+# Wine 8 lacks the library from which Rust gets random numbers. Windows has it, so this copy is not released.
 system=$WINEPREFIX/drive_c/windows/system32
 if [ ! -e "$system/bcryptprimitives.dll" ]; then
     mkdir -p "$WINEPREFIX"
@@ -51,13 +51,13 @@ if slump "${run[@]}" --dt 0 --frames refused >/dev/null || [ "$(wc -l <log)" -ne
     fail "a time step of 0 is not refused in a sentence"
 fi
 
-# Saved and continued, it comes to the same table as without a stop.
+# A run that was saved and resumed has the same table as an uninterrupted run.
 slump "${run[@]}" --duration 0.05 --times 0.05 --frames half --save half.slump >/dev/null || fail "a run is not saved"
 slump run --restart half.slump --duration 0.1 --times 0.1 --renderer cpu --size 64x64 --frames rest >/dev/null ||
     fail "a saved run is not continued"
 cmp <(tail -n 1 whole/observables.csv) <(tail -n 1 rest/observables.csv) || fail "a continued run comes to another end"
 
-# A study, which then has nothing left to do.
+# A study; a second call has nothing left to do.
 printf 'name = "two"\n[base]\nscene = "cradle"\nduration = 0.1\n[vary]\ndt = [1e-3, 2e-3]\n' >study.toml
 slump sweep study.toml --out study >/dev/null || fail "a study fails"
 cp study/runs.csv before.csv

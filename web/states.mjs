@@ -1,7 +1,7 @@
-// Holds the page's module in node against the program, without a browser: node web/states.mjs PAGE PROGRAM [STEPS]
+// Compares the page's module in node with the program, without a browser: node web/states.mjs PAGE PROGRAM [STEPS]
 //
-// PAGE is the folder that web/build.sh made, PROGRAM the command line `slump`. Eight scenes by five steppers are to come to
-// one state, bit for bit.
+// PAGE is the folder that web/build.sh made, PROGRAM the program `slump`. Eight scenes with five steppers must reach the
+// same state in both, bit for bit.
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -13,12 +13,12 @@ const time_step_secs = 5e-4;
 const scenes = ["pile", "moving-walls", "cradle", "drum", "shear", "vibrated", "newtons-cradle", "chain"];
 const steppers = ["moreau", "range", "dem", "avbd", "tgs-soft"];
 
-// What the module asks of a browser that shows it.
+// Functions that the module expects from a page.
 for (const name of ["slump_answer", "slump_ask", "slump_gives_up", "slump_save", "slump_store"]) globalThis[name] = () => {};
 const { initSync, state_of } = await import(join(page, "slump_web.js"));
 initSync({ module: readFileSync(join(page, "slump_web_bg.wasm")) });
 
-// The hash of the state that the program comes to; nothing where it refuses.
+// Hash of the program's last state; null if the program refuses the run.
 function state_of_program(options) {
     const folder = mkdtempSync(join(tmpdir(), "slump-"));
     const picture = ["--size", "64x48", "--renderer", "cpu", "--fps", "1"];

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Opens the page in Chromium and holds it against the program: web/try.py PAGE PROGRAM PICTURES
+"""Opens the page in Chromium and compares it with the program: web/try.py PAGE PROGRAM PICTURES
 
-PAGE is the folder that web/build.sh made, PROGRAM the command line `slump`. Pictures of what was seen go to the
-folder PICTURES, to be looked at. It asks for Debian's chromium and chromium-driver, and for nothing of Python's
-but its own library. states.mjs holds more runs against the program.
+PAGE is the folder that web/build.sh made, PROGRAM the program `slump`. Screenshots go to the folder PICTURES; look
+at them. Needs Debian's chromium and chromium-driver, and Python's standard library only. states.mjs compares more
+runs with the program.
 """
 import base64
 import functools
@@ -77,7 +77,7 @@ class Browser:
         return self.command("/execute/sync", script=script, args=[])
 
     def told(self):
-        """What the page tells of itself; nothing before it runs."""
+        """State of the page; None before it runs."""
         text = self.run("return globalThis.slump ? slump.told() : ''")
         return json.loads(text) if text else None
 
@@ -129,7 +129,7 @@ def middle(told, name):
 
 
 def state_of_program(options, steps):
-    """The hash of the state that the program comes to; nothing where it refuses."""
+    """Hash of the program's last state; None if the program refuses the run."""
     with tempfile.TemporaryDirectory() as folder:
         duration = str(steps * TIME_STEP_SECS)
         command = [str(PROGRAM), "--headless", "--frames", folder, "--size", "64x48", "--renderer", "cpu", "--fps", "1"]
@@ -167,7 +167,7 @@ try:
     print(f"lesson 1 to its end at {told['time_secs']:.3f} s, {rate:.0f} frames of the run a second")
     browser.picture("end")
 
-    # While grains rain the worker takes nothing in; it gives up all the same.
+    # While grains rain the worker receives no messages; it must cancel nevertheless.
     browser.click(middle(browser.told(), "more"))
     browser.click(middle(browser.until("the page Pile", lambda told: "new pile" in told["controls"]), "new pile"))
     browser.until("it rains", lambda told: told["loading"] and "cancel" in told["controls"])
@@ -199,7 +199,7 @@ try:
     assert told["state_hash"] == opened, "loaded anew, a link comes to another state"
     print("loaded anew, the page comes to the same state")
 
-    # All that it needs is there: what follows asks nothing of the network.
+    # The page has loaded everything: from now on it must work without the network.
     browser.set_offline(True)
     assert not browser.run("return navigator.onLine"), "the browser is not offline"
     left, top, right, bottom = told["controls"]["Δt"]

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The table and the chart of results/, in about a quarter of an hour on one core.
+# Makes the table and the chart in results/, in about a quarter of an hour on one core.
 set -eu
 cd "$(dirname "$0")"
 cargo run --release

@@ -1,7 +1,7 @@
-"""A quantity of one's own against the time step: how soon the contacts of a collapsing pile are lost.
+"""An observable of your own against the time step: the rate at which a collapsing pile loses contacts.
 
-Slump does not measure this. A callback looks at the contacts each few milliseconds, and counts those that are no
-longer there at the next look.
+Slump does not measure this. A callback looks at the contacts every few milliseconds, and counts the contacts that
+have disappeared until the next look.
 
     python contact_life.py --out contact_life.png
 """
@@ -23,7 +23,7 @@ LOOK = 1e-2
 
 
 class Losses:
-    """Contacts between grains that were there at one look, and those of them that were gone at the next."""
+    """Number of contacts between grains at each look, and of those that have disappeared at the next."""
 
     def __init__(self) -> None:
         self.before: set[tuple[int, int]] = set()
@@ -31,7 +31,7 @@ class Losses:
         self.gone = 0
 
     def look(self, sim: slump.Simulation) -> None:
-        """To be called at equal times."""
+        """Count contacts; call it at equal intervals of time."""
         contacts = sim.contacts
         between = contacts["kind_j"] == "grain"
         now = set(zip(contacts["id_i"][between].tolist(), contacts["id_j"][between].tolist()))
@@ -41,7 +41,7 @@ class Losses:
 
 
 def lost(collapse: Collapse, duration: float) -> float:
-    """Part of the contacts that are lost in the time between two looks."""
+    """Fraction of the contacts that are lost between two looks."""
     losses = Losses()
     collapse.simulation().run(until=duration, callback=losses.look, every=LOOK)
     return losses.gone / losses.there

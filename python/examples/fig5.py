@@ -19,7 +19,7 @@ TIME_STEPS = [2e-4, 5e-4, 1e-3, 2e-3, 5e-3]
 
 
 def slump_and_overlap(collapse: Collapse, duration: float) -> tuple[float, float]:
-    """Slump at the end, and the mean over all steps of the mean overlap of grains that touch, in d."""
+    """Slump at the end, and the mean overlap of touching grains over all steps, in d."""
     sim = collapse.simulation()
     sim.run(until=duration)
     history = sim.history
@@ -32,7 +32,7 @@ def main() -> None:
     piles = starts(2 if options.quick else options.states, options.quick)
     duration = 0.1 if options.quick else 1.0
 
-    # The dearest runs first, so that no core waits for the last of them.
+    # The longest runs first, so that no core waits for the last run.
     runs = [Collapse(pile, bond, time_step) for time_step in time_steps for bond in bonds for pile in piles]
     found = np.array(in_parallel(partial(slump_and_overlap, duration=duration), runs))
     slumps, overlaps = np.moveaxis(found.reshape(len(time_steps), len(bonds), len(piles), 2), -1, 0)

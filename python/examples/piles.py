@@ -1,4 +1,4 @@
-"""What the examples share: piles to start from, many runs at once, and options of a script."""
+"""Shared by the examples: initial piles, parallel runs, and options of a script."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ Result = TypeVar("Result")
 
 
 def arguments(name: str, about: str) -> argparse.Namespace:
-    """Options of a script that leaves one picture."""
+    """Options of a script that makes one picture."""
     parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--out", type=Path, default=Path(f"{name}.png"), help="the picture (default: %(default)s)")
     parser.add_argument("--states", type=int, default=8, help="how many initial states (default: %(default)s)")
     parser.add_argument("--quick", action="store_true", help="small piles for a short time, to see whether it works")
-    # Overlaps at large time steps are a part of what is looked at.
+    # These examples study large time steps, whose overlaps cause warnings.
     warnings.simplefilter("ignore", slump.SlumpWarning)
     return parser.parse_args()
 
 
 def in_parallel(work: Callable[[Argument], Result], on: Sequence[Argument]) -> list[Result]:
-    """Work on all cores: while steps are taken, Python's lock is free. Results are in the order of `on`."""
+    """Work on all cores: steps do not hold Python's lock. Results are in the order of `on`."""
     results: list[Result] = []
     with ThreadPoolExecutor(os.cpu_count()) as threads:
         for result in threads.map(work, on):
@@ -49,26 +49,26 @@ def in_parallel(work: Callable[[Argument], Result], on: Sequence[Argument]) -> l
 
 
 def starts(count: int, quick: bool) -> list[dict[str, Any]]:
-    """Piles at rest, each from a seed of its own. Settled once, each serves all runs that start from it."""
+    """Piles at rest, one per seed. Each is settled once for all runs that start from it."""
     options: dict[str, Any] = {"grains": 40, "box_width": 8.0} if quick else {"grains": 138}
     return in_parallel(lambda seed: slump.scene(seed=seed, **options), range(1, count + 1))
 
 
 @dataclass
 class Collapse:
-    """One run of a sweep: a pile whose walls go at t = 0."""
+    """One run of a sweep: a pile whose walls vanish at t = 0."""
 
     start: dict[str, Any]
     bond: float
     time_step: float
 
     def simulation(self) -> slump.Simulation:
-        """It at its start."""
+        """A simulation at the initial state."""
         return slump.Simulation(self.start, bond=self.bond, dt=self.time_step)
 
 
 def time_step_axis(axes: Axes, time_steps: Sequence[float]) -> None:
-    """A logarithmic axis that names the time steps of the runs."""
+    """A logarithmic axis with a mark at each time step."""
     axes.set_xscale("log")
     axes.set_xticks(time_steps, [f"{1e3 * time_step:g}" for time_step in time_steps])
     axes.minorticks_off()

@@ -1,4 +1,4 @@
-"""Physics, time step or solver? How much of a number is the grains', and how much the method's."""
+"""Error budgets: how much of a result is due to the grains, the contact law, the time step and the solver."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from ._slump import _budget
 
 
 class Budget(dict):
-    """Columns of a table, a row a cause: ``pandas.DataFrame(budget)`` and ``polars.DataFrame(budget)`` read it.
+    """A table with a row per cause, as a dictionary of columns for ``pandas.DataFrame`` or ``polars.DataFrame``.
 
-    ``adds`` is what a change adds to the value, ``low`` and ``high`` are the ends of its interval; all intervals of a budget
-    hold together in 95 % of budgets. What is not known is None.
+    ``adds`` is the effect of a change on the value, ``low`` and ``high`` are the ends of its interval. In 95 % of
+    budgets all intervals contain the true effect. Unknown values are None.
     """
 
-    #: What the budget says, by quantity, in words.
+    #: The answer in words, by quantity.
     answers: dict[str, str]
     #: "yes", "mostly", "no" or "not-known-yet", by quantity.
     trust: dict[str, str]
-    #: All that the budget is made of, as ``budget.json`` has it.
+    #: All data of the budget, in the form of ``budget.json``.
     data: dict[str, Any]
 
     def __init__(self, data: dict[str, Any]):
@@ -62,12 +62,12 @@ def budget(
     out: str | os.PathLike[str] | None = None,
     **options: Any,
 ) -> Budget:
-    """How much of a number the grains make, how much the contact law, the time step and the solver.
+    """Estimate how much of a result is due to the grains, the contact law, the time step and the solver.
 
-    ``quantity`` is a column of what a run measures (``"slump"``, ``"coordination"``) for its last value, or
-    ``"mean(x)"``, ``"min(x)"``, ``"max(x)"``, ``"total(x)"`` over the simulated time from ``begin`` to ``end`` (s).
-    ``within`` is half the width that every interval is to have, a tenth of the value where it is None; ``cost`` the time to
-    take on all cores (s). With a folder ``out`` the same call goes on where it was stopped. Further options are those of
+    ``quantity`` is a measured column (``"slump"``, ``"coordination"``) at the end of a run, or its ``"mean(x)"``,
+    ``"min(x)"``, ``"max(x)"`` or ``"total(x)"`` over the simulated time from ``begin`` to ``end`` (s). ``within`` is
+    half of the width that each interval should have (default: a tenth of the value). ``cost`` is the time limit on all
+    cores (s). With a folder ``out``, the same call resumes a budget that was stopped. Further options are those of
     :class:`Simulation`.
     """
     quantities = [quantity] if isinstance(quantity, str) else list(quantity)

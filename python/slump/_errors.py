@@ -1,21 +1,21 @@
-"""What can go wrong, each with the sentence of the command line."""
+"""Errors and warnings, with the messages of the command line."""
 
 
 class Error(Exception):
-    """Whatever the program refuses or fails at."""
+    """Base class of all errors of Slump."""
 
 
 class InputError(Error, ValueError):
-    """A value that is not allowed: the sentence names the field, the value and what is allowed."""
+    """A value that is not allowed. The message names the field, the value and the allowed values."""
 
 
 class FileError(Error, OSError):
-    """A file that cannot be read or written, or is none of its kind."""
+    """A file that cannot be read or written, or has the wrong form."""
 
 
 class NotFiniteError(Error, ArithmeticError):
-    """A state that is no longer finite. The simulation is left as it is, for looking at."""
+    """A state that is no longer finite. The simulation keeps this state for inspection."""
 
 
 class SlumpWarning(UserWarning):
-    """Something went wrong in a simulation that goes on; the sentence says what is most likely to help."""
+    """A problem that does not stop the simulation. The message names the most likely remedy."""

@@ -1,4 +1,4 @@
-"""Every setting of a running simulation as an attribute of it, whatever settings there are."""
+"""Makes every setting an attribute of the class of simulations."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def _setting(name: str, about: str) -> property:
 
 
 def add() -> None:
-    """Adds them to the class."""
+    """Add an attribute for each setting to the class."""
     about = options()
     for name in _kinds():
         setattr(Simulation, name, _setting(name, about[name]))

@@ -1,4 +1,4 @@
-"""What a method made of a contact problem."""
+"""Results of solving contact problems."""
 
 from __future__ import annotations
 
@@ -10,47 +10,47 @@ import numpy.typing as npt
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """What a method made of a contact problem."""
+    """Result of one solver on a contact problem."""
 
     contacts: int
     """Number of contacts."""
     method: str
-    """The method's name."""
+    """Name of the solver."""
     on_bodies: bool
-    """Whether it worked on bodies, or on W alone."""
+    """True if the solver used the bodies, False if it used only W."""
     sweeps: int
-    """Sweeps, or iterations that cost about as much."""
+    """Sweeps, or iterations of about the same cost."""
     factorisations: int
-    """Matrices factorised."""
+    """Number of factorised matrices."""
     seconds: float
-    """Time of the solve alone, s; the least of the repeats."""
+    """Time of the solve only, s; the shortest of the repeats."""
     converged: bool
-    """Whether the method got to its tolerance, by what it says and by the residual."""
+    """True if the solver reached its tolerance and the residual confirms it."""
     stalled: bool
-    """Whether it did not because it had stalled: more sweeps are of no use."""
+    """True if the solver stalled before it reached its tolerance: more sweeps would not help."""
     residual: float
-    """The common residual of the impulses, dimensionless."""
+    """Common residual of the impulses, dimensionless."""
     impulses: npt.NDArray[np.float64] = field(repr=False)
-    """(P_n, P_t) of each contact, N·s; a row a contact."""
+    """(P_n, P_t), one row per contact, N·s."""
     velocities: npt.NDArray[np.float64] = field(repr=False)
-    """(v_n, v_t) of each contact at the end of the step, restitution's term included, m/s."""
+    """(v_n, v_t) at the end of the step, including the restitution term, one row per contact, m/s."""
     body_velocities: npt.NDArray[np.float64] | None = field(repr=False)
-    """(v_x, v_y, ω) of each body at the end of the step, m/s and rad/s, where the problem has bodies."""
+    """(v_x, v_y, ω) of each body at the end of the step, m/s and rad/s; None if the problem has no bodies."""
 
 
 @dataclass(frozen=True, eq=False)
 class FoundSolution:
-    """One of the solutions of a contact problem under Coulomb's law."""
+    """One solution of a contact problem under Coulomb friction."""
 
     residual: float
-    """The common residual, dimensionless."""
+    """Common residual, dimensionless."""
     is_solved: bool
-    """Whether that is within the tolerance. A result that is not may be near a solution that others led to."""
+    """True if the residual is within the tolerance. Other results may be close to a solution from another start."""
     starts: list[int]
-    """The starts that led to it, from 0: the impulses of the problem, none, then random ones."""
+    """Starts that led to it: 0 for the impulses of the problem, 1 for zero impulses, then random impulses."""
     distances: list[float]
-    """How far its velocities are from those of each solution before it, m/s: root mean square, weighted with mass."""
+    """Distance of its velocities from those of each earlier solution, m/s: root mean square, weighted with mass."""
     farthest: tuple[int, float]
-    """The grain whose velocity differs most from the first solution, and by how much, m/s."""
+    """The grain whose velocity differs most from the first solution, and the difference, m/s."""
     body_velocities: npt.NDArray[np.float64] = field(repr=False)
     """(v_x, v_y, ω) of each body at the end of the step, m/s and rad/s."""

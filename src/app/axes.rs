@@ -1,15 +1,15 @@
-//! Axes of plots: how much they show at least, and the numbers along them.
+//! Axes of plots: their least range and the numbers along them.
 
 use egui::Ui;
 use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::render::numbers::{decimal, ticks};
 
-/// Least height of a vertical axis, as a part of its largest value.
+/// Least range of a linear vertical axis, as a fraction of its largest value.
 const LEAST_SPAN: f64 = 1e-3;
-/// The same of one that is logarithmic: two powers of ten are within it wherever it lies.
+/// Least range of a logarithmic axis, in decades. With two decades, the axis always contains two powers of ten.
 const LEAST_DECADES: f64 = 2.0;
-/// A plot with the look of all of them. The wheel does not zoom it.
+/// A plot in the style that all plots share. The mouse wheel does not zoom it.
 pub(super) fn bare_plot<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -18,13 +18,14 @@ pub(super) fn bare_plot<'a>(
     Plot::new(id)
         .height(height)
         .allow_scroll(false)
-        // egui would fill it pixel by pixel (see `fill`).
+        // egui would fill the background pixel by pixel (see `fill`).
         .show_background(false)
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
 }
 
-/// A plot with an axis along x in that unit; `log` says which axes are logarithmic. Numbers along a logarithmic axis
-/// with a unit are written in full. Times along a linear axis are in seconds and written in milliseconds.
+/// A plot whose x axis has the unit `x_unit`. `log` says which axes (x, y) are logarithmic. Numbers along a
+/// logarithmic axis with a unit are written in full. Times along a linear axis are in seconds and written in
+/// milliseconds.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -34,7 +35,7 @@ pub(super) fn plot_with_axes<'a>(
 ) -> Plot<'a> {
     let y_hints = AxisHints::new_y().min_thickness(34.0);
     bare_plot(ui, id, height)
-        // Half of the last label lies right of the plot.
+        // Half of the last label is to the right of the plot.
         .width(ui.available_width() - 10.0)
         .x_grid_spacer(move |grid| round_marks(grid, log[0]))
         .y_grid_spacer(move |grid| round_marks(grid, log[1]))
@@ -42,14 +43,14 @@ pub(super) fn plot_with_axes<'a>(
         .custom_y_axes(vec![axis(y_hints, log[1], "")])
 }
 
-/// The same plot, which shows at least so much along x and y.
+/// Makes a plot show at least the range `ends` of x and y.
 pub(super) fn with_least(plot: Plot<'_>, ends: [[f64; 2]; 2]) -> Plot<'_> {
     let [[left, right], [bottom, top]] = ends;
     plot.include_x(left).include_x(right).include_y(bottom).include_y(top)
 }
 
-/// What an axis shows at least of such values, or of their logarithms: around those that hardly differ, more than the digits
-/// of their rounding, or two powers of ten.
+/// Least range of an axis for these values, or for their logarithms. Around values that hardly differ it is larger
+/// than their rounding errors: a fraction of the largest value, or two decades.
 pub(super) fn with_room(values: impl Iterator<Item = f64>, log: bool) -> [f64; 2] {
     let ends = values.filter(|value| value.is_finite()).map(|value| [value, value]);
     let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);
@@ -78,7 +79,7 @@ fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
     values.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
-/// Labels of the marks: numbers, or the powers of ten that numbers stand for.
+/// Labels of the marks: numbers, or powers of ten if the marks are logarithms.
 fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
     hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
         if log && unit.is_empty() {

@@ -1,20 +1,21 @@
-//! The budget of the solver: how well steps are solved at first, what else is one click away, and what to try.
+//! Presets of the solver that the window offers, and hints on experiments.
 
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic};
 
-/// A way to solve steps that has a name.
+/// A named preset of the solver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
     pub name: &'static str,
-    /// What it costs, in time and in accuracy.
+    /// Cost of the preset, in time and in accuracy.
     pub hint: &'static str,
     pub settings: SolverSettings,
 }
 
 impl Budget {
-    /// What it is where borders shear or a force drives a wall: by the method next to its own that knows of them.
+    /// Settings of the preset in these surroundings. If its solver supports no sheared borders or driven walls that
+    /// are there, uses `nsgs`.
     pub(super) fn among(&self, surroundings: &Surroundings) -> SolverSettings {
         let info = self.settings.method.info();
         let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
@@ -26,34 +27,36 @@ impl Budget {
     }
 }
 
-/// Forty sweeps, by all cores.
+/// 40 sweeps on all cores.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
-    hint: "40 sweeps a step, solved or not: some 10 ms for 10,000 grains. Without cohesion large piles slump nearly as they do \
-           in solved steps. With cohesion piles fall that stand if they are solved, and small piles are off by a tenth.",
+    hint: "40 sweeps per step, solved or not: about 10 ms for 10,000 grains. Without cohesion, large piles slump \
+           nearly as in solved steps. With cohesion, piles can slump although they would not in solved steps, and \
+           small piles are off by a tenth.",
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 
-/// As the paper's figures are drawn.
+/// The paper's solver.
 pub(super) const PAPER: Budget = Budget {
     name: "Paper",
-    hint: "The paper's scheme: Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are \
-           computed, at a touch tolerance of 0 the same to the last digit. Some steps stay unsolved.",
+    hint: "The paper's solver: Gauss-Seidel to a relative change of 1e-7. With a touch tolerance of 0 it gives the \
+           figures of slump --headless to the last digit. It does not solve some steps.",
     settings: SolverSettings::PAPER,
 };
 
-/// What everything begins with.
+/// The default.
 pub(super) const SOLVED: Budget = Budget {
     name: "Solved",
-    hint: "Each step is solved under Coulomb's law, by Newton's method. If it does not solve a step of a flowing pile, conjugate \
-           gradients make 400 sweeps, and the error that remains is shown.",
+    hint: "Newton's method tries to solve each step under Coulomb friction. If it does not solve a step of a \
+           flowing pile, conjugate gradients make 400 sweeps, and the window shows the remaining error.",
     settings: SolverSettings::DEFAULT,
 };
 
-/// All of them.
+/// All presets, in the order of their buttons.
 pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
-/// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`docs/paper.md`, Fig. 5a); beyond it need not.
+/// Largest Bond at which a larger Δt makes a pile with the shifted cone hold better (`docs/paper.md`, Fig. 5a).
+/// Stronger piles need not.
 const WEAK: f64 = 50.0;
 
 /// Longest fall from rest in one step without a warning, in mean diameters. A smaller value warns at the end of the slider
@@ -77,26 +80,26 @@ pub(super) fn too_long(
     })
 }
 
-/// What to try, and what to watch.
+/// A hint: something to try and its effect.
 pub(super) fn what_to_try(settings: &Settings) -> &'static str {
     let parameters = &settings.parameters;
     if parameters.bond == 0.0 {
-        return "At Bond 0 nothing sticks, and Δt is next to nothing to the pile: drag Bond and see.";
+        return "At Bond 0 nothing sticks, and Δt hardly matters: drag Bond and see.";
     }
     match settings.stepper {
         Stepper::Moreau if parameters.bond <= WEAK => {
             "A larger Δt makes these grains stick better: drag it and see."
         }
         Stepper::Moreau if parameters.cone == FrictionCone::Shifted => {
-            "So strong a pile hardly gains from a larger Δt; with steps left unsolved it even loses."
+            "Such strong piles hardly gain from a larger Δt, and even lose if steps are unsolved."
         }
         Stepper::Moreau => {
-            "In this cone a larger Δt makes strong piles stick better, too: drag it and see."
+            "With this cone a larger Δt makes strong piles stick better, too: drag it and see."
         }
         Stepper::Range => "Under this law Bond means the same at every Δt: drag both and see.",
-        Stepper::Avbd => "Here a step gets as far as its iterations take it: drag Δt and see.",
+        Stepper::Avbd => "Here each step makes a fixed number of iterations: drag Δt and see.",
         Stepper::TgsSoft | Stepper::Dem => {
-            "Here cohesion is a force like any other, whatever Δt: drag Bond and see."
+            "Here cohesion is an ordinary force at every Δt: drag Bond and see."
         }
     }
 }

@@ -1,14 +1,14 @@
-//! Which part of the scene the window shows: the whole of it, until the user pans or zooms.
+//! The visible part of the scene: the whole scene until the user pans or zooms.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::render::{Camera, Style};
 
-/// Narrowest and widest view, in units of the framed one.
+/// Narrowest and widest view, in multiples of the view that shows the whole scene.
 const ZOOM_LIMITS: [f64; 2] = [1e-3, 30.0];
 
-/// The view of all worlds of a window.
+/// The view that all worlds of a window share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneCamera {
     framed: bool,
@@ -30,8 +30,7 @@ impl SceneCamera {
         self.framed = true;
     }
 
-    /// The camera of a picture of `size` pixels, `pixels_per_point` of them in a point. `view` is
-    /// what the whole scene takes, m.
+    /// Camera of a picture of `size` pixels. `view` has the corners of the whole scene, m.
     pub(crate) fn camera(
         &mut self,
         view: [DVec2; 2],
@@ -50,8 +49,8 @@ impl SceneCamera {
         Camera { centre: self.centre, metres_per_pixel }
     }
 
-    /// The camera that shows at least as much of the scene on a picture of another size as the
-    /// window does on `window_points`.
+    /// Camera of a picture whose size is not the window's. It shows at least the part of the scene that the window
+    /// shows on `window_points`.
     pub(crate) fn for_picture(
         &self,
         view: [DVec2; 2],
@@ -69,14 +68,15 @@ impl SceneCamera {
         Camera { centre: self.centre, metres_per_pixel }
     }
 
-    /// Moves the scene with the mouse; y down, points.
+    /// Moves the scene with the mouse. `moved` is in points, y down.
     pub(crate) fn pan(&mut self, moved: egui::Vec2) {
         self.framed = false;
         let moved = DVec2::new(f64::from(moved.x), -f64::from(moved.y));
         self.centre -= moved * self.metres_per_point;
     }
 
-    /// Zooms by `factor`, so that what lies `from_middle` (points, y down) stays in its place.
+    /// Zooms by `factor`. The point of the scene that is `from_middle` (points, y down) away from the centre keeps its
+    /// place.
     pub(crate) fn zoom(&mut self, factor: f64, from_middle: egui::Vec2) {
         let [nearest, farthest] = ZOOM_LIMITS.map(|limit| limit * self.framed_metres_per_point);
         let scale = (self.metres_per_point / factor).clamp(nearest, farthest);

@@ -1,4 +1,5 @@
-//! egui on a graphics device: the window's screen, and a canvas without one, for pictures of plots and measurements.
+//! egui on a graphics device: the window's screen, and a canvas without a window for pictures of plots and for
+//! measurements.
 
 use egui::{ClippedPrimitive, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
@@ -10,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::render::Gpu;
 use crate::render::gpu::{FORMAT, OffscreenTarget};
 
-/// Draws user interfaces into targets of one format.
+/// Draws user interfaces into targets of one texture format.
 pub(super) struct Screen {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
@@ -18,20 +19,21 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// A screen for targets of this format.
+    /// Prepares drawing into targets with this texture format.
     pub(super) fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         format: wgpu::TextureFormat,
     ) -> Self {
-        // Nothing here has gradients that would show steps.
+        // Nothing drawn here has gradients that would show bands.
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
         let mut renderer = Renderer::new(device, format, options);
         renderer.callback_resources.insert(TargetFormat(format));
         Self { device: device.clone(), queue: queue.clone(), renderer }
     }
 
-    /// Draws what a pass of egui put out on `size` pixels of a target, and takes its textures; `then` records what follows the drawing.
+    /// Draws egui's output into a target of `size` pixels and uploads its textures. `then` can record commands that
+    /// run after the drawing.
     pub(super) fn draw(
         &mut self,
         view: &wgpu::TextureView,
@@ -73,9 +75,9 @@ impl Screen {
     }
 }
 
-/// Pixels of a picture a point: words stay readable in print.
+/// Pixels per point of a printed plot: large enough that words stay readable in print.
 const PIXELS_PER_POINT: f32 = 2.0;
-/// Passes until the axes have settled to the width of their labels.
+/// Passes of egui until the axes have settled to the width of their labels.
 const PASSES: usize = 4;
 
 /// A graphics device without a window.
@@ -86,26 +88,26 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Opens the device that pictures of scenes are drawn on.
+    /// Opens the device that draws pictures of scenes.
     ///
     /// # Errors
-    /// Where there is none; says what brings one.
+    /// If there is no graphics device. The message says which packages provide one.
     pub fn new() -> Result<Self> {
         let gpu = Gpu::any()?;
         let screen = Screen::new(&gpu.device, &gpu.queue, FORMAT);
         Ok(Self { gpu, screen, target: None })
     }
 
-    /// What draws.
+    /// Name of the graphics device.
     pub fn name(&self) -> &str {
         &self.gpu.name
     }
 
-    /// Runs one pass of a user interface on `size` pixels and draws it. With `read`, returns the
-    /// picture; otherwise waits until it is drawn.
+    /// Runs one pass of a user interface and draws it on `size` pixels. With `read`, returns the picture; otherwise
+    /// waits until it is drawn.
     ///
     /// # Errors
-    /// Names `size` where the device cannot draw it, or says what the device reports.
+    /// Names `size` if the device cannot draw a picture of that size, or passes on the device's error.
     pub fn draw(
         &mut self,
         context: &egui::Context,
@@ -151,7 +153,7 @@ impl Canvas {
         Ok(image)
     }
 
-    /// Draws a picture of plots, with light ink on a `dark` ground.
+    /// Draws a picture of plots, in light colours on a dark ground if `dark`.
     pub(super) fn print(
         &mut self,
         size: [u32; 2],

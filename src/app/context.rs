@@ -22,17 +22,17 @@ pub(crate) enum Request {
     Load(Box<Config>),
     /// Open the file of a saved run or of a session.
     LoadSaved(PathBuf),
-    /// Go to a lesson.
+    /// Show a lesson.
     Visit(usize),
     /// Forget the points of Fig. 5a.
     ForgetReleased,
     /// End the lessons.
     LeaveLessons,
-    /// Save the moment of the selected world.
+    /// Save the visible moment of the selected world.
     SaveState,
     /// Save the session.
     SaveSession,
-    /// Copy the link of the present moment.
+    /// Copy a link to the present moment.
     CopyLink,
 }
 
@@ -51,17 +51,17 @@ pub(crate) struct PanelContext<'a> {
 }
 
 impl PanelContext<'_> {
-    /// Asks the window for something.
+    /// Sends a request to the window.
     pub(crate) fn ask(&mut self, request: Request) {
         self.requests.push(request);
     }
 
-    /// Says in the status bar for a while what went wrong.
+    /// Shows a failure in the status bar for a while.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         *self.notice = Some(Notice::new(text, true));
     }
 
-    /// Has a file written into the folder of the preferences. The job says which.
+    /// Writes a file into the folder of the preferences on another thread. The job returns the path.
     pub(crate) fn write(
         &mut self,
         context: &egui::Context,
@@ -71,12 +71,12 @@ impl PanelContext<'_> {
         self.exports.write(context, &self.preferences.folder, Vec::new(), job);
     }
 
-    /// Notes where a control lies.
+    /// Stores the place of a control.
     pub(crate) fn note_control(&mut self, name: &str, rect: Rect) {
         self.controls.insert(name.to_owned(), rect);
     }
 
-    /// The earlier run that shows behind the present one.
+    /// The earlier run that is drawn behind the present one.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         self.run.ghost().filter(|_| self.preferences.ghost)
     }

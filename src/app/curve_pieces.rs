@@ -1,9 +1,9 @@
-//! A curve as a plot draws it: thinned by simulated time, in pieces between which there is nothing to draw.
+//! Prepares a curve for a plot: thins it by simulated time and splits it into pieces at values that cannot be drawn.
 
 use crate::live::Curve;
 use crate::sim::Observables;
 
-/// Intervals of time of which a long curve shows its extremes.
+/// Number of time intervals in which a long curve shows its extremes.
 const BUCKETS: usize = 300;
 
 /// The curve up to a time, in pieces. Values that are not finite, such as the logarithm of 0, leave a gap between two

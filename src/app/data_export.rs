@@ -1,5 +1,5 @@
-//! Recordings of what the window has computed. A thread of their own computes all of it once more and writes
-//! it down, so that neither the window nor the run waits.
+//! Recordings of a run that the window has computed. A thread of its own computes the run again and writes it, so that
+//! neither the window nor the run waits.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -25,13 +25,13 @@ use crate::world::Disc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DataChoices {
-    /// The folder of the recording; below that of all files, unless it says otherwise.
+    /// Folder of the recording. A relative path starts at the folder of all files.
     pub folder: PathBuf,
-    /// Simulated time between two frames, s.
+    /// Simulated time between frames, s.
     pub every_secs: f64,
-    /// A frame after each step, whatever `every_secs` says.
+    /// True for a frame after each step; then `every_secs` is not used.
     pub each_step: bool,
-    /// The files that are written.
+    /// Formats of the files.
     pub formats: Vec<FormatName>,
 }
 
@@ -46,37 +46,37 @@ impl Default for DataChoices {
     }
 }
 
-/// What the panel about data is busy with.
+/// State of the data panel.
 #[derive(Default)]
 pub(crate) struct DataPanel {
-    /// First and last simulated time of what is exported, s; all that is recorded where there are none.
+    /// First and last simulated time of the export, s. `None` stands for the whole record.
     pub stretch: Option<[f64; 2]>,
     pub overwrite: bool,
     pub export: Option<Work<String>>,
     pub told: Option<Notice>,
-    /// The file of a saved run, as it is typed.
+    /// Path of a saved run, as typed.
     pub saved_run: String,
 }
 
-/// What is to be written.
+/// A request for a recording.
 pub(crate) struct DataOrder {
     pub folder: PathBuf,
     pub overwrite: bool,
-    /// As what, and how often; after each step where no time between frames is given.
+    /// Formats and time between frames. `None` as time stands for a frame after each step.
     pub settings: DataSettings,
-    /// First and last simulated time, s; all that is recorded where none are given.
+    /// First and last simulated time, s. `None` stands for the whole record.
     pub stretch: Option<[f64; 2]>,
 }
 
 impl DataOrder {
-    /// Writes a run, where it was not given up before it came. Says what became of it.
+    /// Writes a run and returns a message for the user. `run` is `None` if the user cancelled before it arrived.
     pub(crate) fn write(&self, run: Option<TakenRun>, reporter: &Reporter) -> Result<String> {
         let nothing = || Ok("Stopped before the first frame".to_owned());
         self.settings.validate("data-every")?;
         let Some(run) = run else { return nothing() };
         let record = &run.world.record;
         let stretch = self.stretch_of(record)?;
-        // Until the recording has it, which begins with the first moment of the stretch.
+        // The folder is held here until the recording begins, at the first moment of the interval.
         let mut folder = Some(RecordingFolder::of(&self.folder, self.overwrite)?);
         let mut recording: Option<Recording> = None;
         let start = record.start().observables();
@@ -98,7 +98,7 @@ impl DataOrder {
                 });
             }
             let Some(recording) = &mut recording else { return Ok(ControlFlow::Continue(())) };
-            // No step led to the moment that all began with.
+            // The first moment of a run is not the result of a step.
             if simulation.observables().step > start.step {
                 recording.add_step(simulation.observables())?;
             }
@@ -114,7 +114,7 @@ impl DataOrder {
         })
     }
 
-    /// The simulated times of a run that are asked for, s.
+    /// First and last simulated time to be written, s. Infinite if the whole record was asked for.
     fn stretch_of(&self, record: &WorldRecord) -> Result<[f64; 2]> {
         let Some([from, to]) = self.stretch else { return Ok([f64::NEG_INFINITY, f64::INFINITY]) };
         let (first, last) = (record.start().time_secs(), record.end_secs());
@@ -126,15 +126,14 @@ impl DataOrder {
             }
         }
         if to < from {
-            let allowed = format!("at or after the beginning, {}", found[0]);
+            let allowed = format!("{}, the beginning, or later", found[0]);
             return Err(Error::value("to", &found[1], allowed));
         }
         Ok([from, to])
     }
 }
 
-/// What is to be known of a recording that begins with a moment: the scene with its settings, and what was changed
-/// later on.
+/// Facts about a recording that begins at this moment: the scene, its settings, and later changes.
 fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<RunFacts> {
     let record = &run.world.record;
     let mut scene = run.start.scene.clone();
@@ -160,7 +159,7 @@ fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<Run
     Ok(about)
 }
 
-/// Which grains were pulled by the mouse in which steps.
+/// Sentences on the grains that the mouse pulled, with the steps.
 fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -> Vec<String> {
     let mut told = Vec::new();
     let mut since = first_step;
@@ -179,7 +178,7 @@ fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -
     told
 }
 
-/// What the mouse added, removed and drew, and after which steps.
+/// Sentences on the changes that the mouse made, with the steps.
 fn edits(all: &[HandEdit]) -> Vec<String> {
     let told = |HandEdit { after_step, edit }: &HandEdit| {
         let told = match edit {

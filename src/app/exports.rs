@@ -1,4 +1,4 @@
-//! Files that are being written, on threads of their own, so that the window never waits for one.
+//! Writes files on threads of their own, so that the window never waits for a file.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -19,15 +19,15 @@ use crate::output::{Texts, check_writable, write_file};
 use crate::render::{Renderer, RendererChoice};
 use crate::sim::Observables;
 
-/// What is being written. None of it keeps the window waiting.
+/// All files and links that are being made. The window does not wait for them.
 #[derive(Default)]
 pub(crate) struct Exports {
-    /// Files that are written, one after another.
+    /// Files to be written, one after another.
     files: VecDeque<Work<PathBuf>>,
     printers: Arc<Mutex<Printers>>,
     pub data: DataPanel,
     pub film: Option<(FilmFormat, Work<String>)>,
-    /// A link that is to be copied, and whether something was changed by hand that it does not tell.
+    /// A link to be copied. The flag is true if changes by hand are not in the link.
     link: Option<Work<(String, bool)>>,
 }
 
@@ -39,11 +39,11 @@ impl Drop for Exports {
     }
 }
 
-/// What is said of a link that says all.
-const COPIED: &str = "The link is copied: paste it into a window, or give it to slump --open.";
-/// What is said of one that does not.
-const PULLED: &str = "The link is copied; something was pulled by hand, added or removed, or a wall drawn, which it does not \
-                      tell: it makes another run, and a session this one.";
+/// Message for a link that describes the whole run.
+const COPIED: &str = "The link is copied: paste it into a window, or pass it to slump --open.";
+/// Message for a link that lacks changes by hand.
+const PULLED: &str = "The link is copied. It lacks changes by hand (grains that were pulled by hand, added or \
+                      removed, walls that were moved), so it makes another run. A session keeps these changes.";
 
 impl Exports {
     /// True while a file or a recording is being written.
@@ -51,8 +51,8 @@ impl Exports {
         !self.files.is_empty() || self.data.export.is_some() || self.film.is_some()
     }
 
-    /// Has a file written into a folder, after those that are being written and after the runs that it is about have been
-    /// handed out. The job says which file.
+    /// Writes a file into a folder on another thread. The job waits for earlier files and for its `runs`, and returns
+    /// the path.
     pub(super) fn write<R: Send + 'static>(
         &mut self,
         context: &egui::Context,
@@ -68,21 +68,21 @@ impl Exports {
         }));
     }
 
-    /// Has the link of runs copied.
+    /// Copies the link of these runs.
     pub(super) fn copy_link(&mut self, context: &egui::Context, runs: Vec<Receiver<TakenRun>>) {
         self.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
-    /// Reports the exports that have ended: the last one of them.
+    /// Returns a notice of the last export that has ended.
     pub(super) fn follow(&mut self, context: &egui::Context) -> Option<Notice> {
         let mut notice = None;
         if let Some(outcome) = self.files.front().and_then(Work::outcome) {
             self.files.pop_front();
-            // A run that was just saved is the one that is likely to be opened.
+            // The run that was just saved is the one that the user is likely to open.
             if let Some(path) = outcome.as_ref().ok().filter(|path| is_saved_run(path)) {
                 self.data.saved_run = path.display().to_string();
             }
-            // Where the program was started is not where its user looks.
+            // The user may not look in the folder in which the program was started, so the path is absolute.
             let whole = |path: PathBuf| std::path::absolute(&path).unwrap_or(path);
             notice = Some(outcome.map(|path| format!("Saved {}", whole(path).display())).into());
         }
@@ -107,7 +107,7 @@ impl Exports {
     }
 }
 
-/// What pictures are drawn with, opened by the first that needs it: opening a device takes longer than a picture.
+/// Renderers of pictures, opened when the first picture needs them: opening a device takes longer than drawing.
 #[derive(Default)]
 pub(crate) struct Printers {
     renderer: Option<Renderer>,
@@ -115,7 +115,7 @@ pub(crate) struct Printers {
 }
 
 impl Printers {
-    /// Draws scenes.
+    /// Renderer of scenes.
     pub(super) fn renderer(&mut self) -> Result<&mut Renderer> {
         match &mut self.renderer {
             Some(renderer) => Ok(renderer),
@@ -123,7 +123,7 @@ impl Printers {
         }
     }
 
-    /// Draws plots.
+    /// Canvas of plots.
     pub(super) fn canvas(&mut self) -> Result<&mut Canvas> {
         match &mut self.canvas {
             Some(canvas) => Ok(canvas),
@@ -132,14 +132,14 @@ impl Printers {
     }
 }
 
-/// Writes the observables of all worlds as a table, and beside it what they are of: lines of another kind in it would be
-/// data to those who read it.
+/// Writes the observables of all worlds as a table, and their description to a second file: other lines in a CSV file
+/// would be read as data.
 pub(super) fn write_table(path: &Path, curves: &[Curve], texts: &Texts) -> Result<()> {
     write_file(&path.with_extension("csv.txt"), texts.lines().as_bytes())?;
     write_curves(path, curves)
 }
 
-/// All rows of all curves, each with the number of its world in front.
+/// Writes all rows of all curves, each with the number of its world in the first column.
 fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let has_more = curves.iter().flat_map(Curve::rows).any(Observables::has_further_columns);
     let cells = |row: Observables| if has_more { row.with_further_columns() } else { row };

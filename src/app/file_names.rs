@@ -6,13 +6,13 @@ use super::setting_control::written;
 use crate::sim::Settings;
 use crate::world::Parameters;
 
-/// Ending of files that runs are saved to.
+/// Extension of files with saved runs.
 pub(crate) const STATE_ENDING: &str = "slump";
 
-/// Ending of files that sessions are saved to.
+/// Extension of files with sessions.
 pub(crate) const SESSION_ENDING: &str = "session";
 
-/// How the names of files about a moment of a scene begin, with the numbers of its world where there is one alone.
+/// First part of the names of files that show a moment of a scene. With one world it contains Bond and Δt.
 pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String {
     let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
     let which = match settings {
@@ -25,18 +25,18 @@ pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String
     format!("slump-{name}-{which}-{time_secs:.4}s")
 }
 
-/// `stem.ending` in `folder`, numbered where there is such a file already.
+/// Path of `stem.ending` in `folder`, with a number if this file exists.
 pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     let numbered = |number: u32| folder.join(format!("{stem}-{number}.{ending}"));
     let plain = folder.join(format!("{stem}.{ending}"));
     if !plain.exists() {
         return plain;
     }
-    // Ends: no folder holds that many files.
+    // The search ends, because no folder has that many files.
     (2..).map(numbered).find(|path| !path.exists()).unwrap_or(plain)
 }
 
-/// That a file is none of those that can be opened.
+/// Message for a file that the window cannot open.
 pub(super) fn refused_file(path: &Path) -> String {
     let name = path.display();
     format!(
@@ -49,7 +49,7 @@ pub(super) fn is_session(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == SESSION_ENDING)
 }
 
-/// True for the name of a saved run or a session.
+/// True if the name is that of a saved run or a session.
 pub(super) fn is_saved_run(path: &Path) -> bool {
     is_session(path) || path.extension().is_some_and(|ending| ending == STATE_ENDING)
 }

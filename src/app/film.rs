@@ -1,5 +1,5 @@
-//! Videos and animations of what the window has computed: all of it is computed once more, bit for bit, by a thread
-//! of its own, and drawn at equal times.
+//! Videos and animations of a recorded run. A thread of its own computes the run again, bit for bit, and draws it at
+//! equal intervals of time.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ use crate::output::{check_writable, counted};
 use crate::render::{Renderer, RendererChoice, speed_reference};
 use crate::sim::{RunEnding, Settings, Simulation};
 
-/// What the record is made into.
+/// File format of a film.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FilmFormat {
     /// MP4.
@@ -26,7 +26,7 @@ pub(crate) enum FilmFormat {
 }
 
 impl FilmFormat {
-    /// What it is called.
+    /// Name of the format in messages.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Video => "video",
@@ -35,47 +35,48 @@ impl FilmFormat {
     }
 }
 
-/// Computing the moments is this part of the work, and drawing and encoding them is the rest.
+/// Fraction of the work that computes the moments. Drawing and encoding are the rest.
 const PART_OF_MOMENTS: f64 = 0.3;
-/// More pictures than this are a mistake rather than a wish.
+/// Largest number of pictures in a film. More are probably a mistake.
 const MOST_PICTURES: f64 = 1e5;
 
-/// For each world, the state that each picture shows, and its settings.
+/// For each world and picture: index of the stored state, and the settings of that moment.
 type Moments = Vec<Vec<(usize, Settings)>>;
 
-/// What a video or an animation is to show.
+/// A request for a video or an animation.
 pub(crate) struct FilmOrder {
     pub format: FilmFormat,
-    /// How all pictures look; its moments are those of the present.
+    /// Look of all pictures. Its moments are replaced by those of each picture.
     pub picture: ScenePicture,
     pub slumps: bool,
-    /// Pictures a second, as many as the format can have.
+    /// Pictures per second that the format can express.
     pub rate_hz: f64,
-    /// Simulated seconds in a second.
+    /// Simulated seconds per second of the film.
     pub speed: f64,
-    /// First and last simulated time, s; all that is recorded where none are given.
+    /// First and last simulated time, s. `None` stands for the whole record.
     pub stretch: Option<[f64; 2]>,
     pub folder: PathBuf,
     pub stem: String,
 }
 
 impl FilmOrder {
-    /// Makes it of a run a world; of fewer, where it was given up before they came, none. Says what became of it.
+    /// Makes the film from one run per world and returns a message for the user. If the user cancels before all runs
+    /// have arrived, makes no film.
     pub(crate) fn make(self, runs: &[TakenRun], reporter: &Reporter) -> Result<String> {
         let (format, count) = (self.format, self.picture.worlds.len());
         let made = if runs.len() == count { self.write(runs, reporter)? } else { None };
         let Some((path, pictures)) = made else {
-            return Ok(format!("Stopped: there is no {}", format.name()));
+            return Ok(format!("Stopped: no {} is saved", format.name()));
         };
         let whole = std::path::absolute(&path).unwrap_or(path);
         Ok(format!("Saved {} of {}", whole.display(), counted(pictures as u64, "picture")))
     }
 
-    /// The file and how many pictures it has; nothing where it was given up.
+    /// Writes the film. Returns the file and its number of pictures, or `None` if the user cancels.
     fn write(self, runs: &[TakenRun], reporter: &Reporter) -> Result<Option<(PathBuf, usize)>> {
         check_writable("folder", &self.folder)?;
         let times = self.times(runs)?;
-        // On disk: all of them have one scale of colours, and that is known at the end.
+        // The states wait on disk because all pictures share one colour scale, which is known only at the end.
         let mut states = WaitingStates::start(&self.folder)?;
         let Some((shown, fastest)) = self.moments(runs, &times, &mut states, reporter)? else {
             return Ok(None);
@@ -97,7 +98,7 @@ impl FilmOrder {
                 return Ok(None);
             }
             for (world, shown) in picture.worlds.iter_mut().zip(&shown) {
-                // Of one that ended before, its last moment.
+                // A world that has already ended shows its last moment.
                 let moment = shown.get(number).or(shown.last()).copied();
                 let (index, settings) = moment.unwrap_or((0, world.settings));
                 world.settings = settings;
@@ -130,13 +131,13 @@ impl FilmOrder {
                 millis_text(until - from),
                 1e-3 * self.rate_hz / self.speed
             );
-            let allowed = format!("one picture at least and no more than {MOST_PICTURES}");
+            let allowed = format!("at least one picture and at most {MOST_PICTURES}");
             return Err(Error::value(self.format.name(), found, allowed));
         }
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
     }
 
-    /// Computes what is to be shown, and the fastest grain's speed. Nothing where it is given up.
+    /// Computes the moments of the film and the speed of the fastest grain, m/s. Returns `None` if the user cancels.
     fn moments(
         &self,
         runs: &[TakenRun],
@@ -161,7 +162,7 @@ impl FilmOrder {
                     fastest = fastest.max(speed_reference(style, &snapshot));
                     let index = states.len();
                     states.add(style, index, snapshot)?;
-                    // Pictures may follow each other faster than steps.
+                    // Pictures can be closer in time than steps.
                     while due.next_if(|&&time| is_nearest(simulation, time)).is_some() {
                         shown[world].push((index, *simulation.settings()));
                     }
@@ -176,7 +177,7 @@ impl FilmOrder {
     }
 }
 
-/// True if a run has come to a time, or no later step comes nearer to it.
+/// True if the present step is the nearest to `time_secs`, or a later one.
 fn is_nearest(simulation: &Simulation, time_secs: f64) -> bool {
     let half_a_step = 0.5 * simulation.settings().parameters.time_step_secs;
     simulation.time_secs() + half_a_step > time_secs

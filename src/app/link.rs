@@ -1,11 +1,11 @@
-//! Links. A link is a line of text that opens a run again. It says the origin of the scene and, for each world, the
-//! settings, the changes on the way and the number of steps.
+//! Links. A link is a line of text that opens a run again. It contains the origin of the scene and, for each world,
+//! the settings, their changes and the number of steps.
 //!
 //! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
 //!
-//! Names are those of the command line. `from` begins settings that are in force after that step, `to` ends a
-//! world with the step that it has come to; what follows is the next world. What is left out is as the scene
-//! says, or as before.
+//! Names are those of the command line. `from` begins settings that apply after that step. `to` ends a world and gives
+//! its number of steps; the next world follows. Settings that are left out keep the value of the scene or the previous
+//! value.
 
 use std::sync::OnceLock;
 
@@ -16,53 +16,55 @@ use crate::live::WorldPlan;
 use crate::scene::SceneInfo;
 use crate::sim::Settings;
 
-/// What links begin with.
+/// Scheme of links for a window.
 pub(crate) const LINK_START: &str = "slump://";
 const HEAD: &str = "slump://run?";
-/// What links of a page begin with: its own address.
+/// First part of links in a browser: the address of the page.
 static PAGE: OnceLock<String> = OnceLock::new();
 
-/// Has links begin with the address of a page.
+/// Makes links begin with the address of a page.
 #[cfg(target_arch = "wasm32")]
 pub(super) fn set_link_start(start: String) {
     let _ = PAGE.set(start);
 }
 
-/// True for what may be a link, of a window or of a page.
+/// True if the text can be a link, of a window or of a browser version.
 pub(super) fn is_link(text: &str) -> bool {
     let text = text.trim_start();
     text.starts_with(LINK_START) || (text.starts_with("http") && text.contains("?scene="))
 }
 
-/// What a link must be, for messages.
+/// Expected form of a link, for messages.
 const FORM: &str = "a line that Copy link gave: slump://run?…&to=STEP";
-/// More of a link is no help in a message.
+/// Largest number of characters of a link that a message shows.
 const MOST_SHOWN: usize = 60;
 
-/// A run, by what was asked of it.
+/// A run, described by the settings that the user asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunLink {
     pub source: SceneSource,
     worlds: Vec<LinkedWorld>,
 }
 
-/// A world of it.
+/// One world of a link.
 #[derive(Clone, Debug, PartialEq)]
 struct LinkedWorld {
-    /// What is asked for after each of these steps, the first of which is 0.
+    /// Settings that apply after a step, in order of steps. The first step is 0.
     changes: Vec<(u64, Config)>,
     steps: u64,
 }
 
-/// Words of a command line as parts of a link.
+/// Appends words of a command line to a link.
 fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String]) {
     for pair in words.chunks_exact(2) {
         query.append_pair(pair[0].trim_start_matches('-'), &pair[1]);
     }
 }
 
-/// The link of worlds, and true where a hand pulled or changed something in any of them, which it does not tell.
-/// Refused where the run went on from a file, or its scene is no longer there.
+/// Link of these worlds. The flag is true if a change by hand, which a link cannot express, was made in one of them.
+///
+/// # Errors
+/// If the run continued from a file, or its scene no longer exists.
 pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     let source = runs.first().map(|run| run.start.config.source.clone()).unwrap_or_default();
     check_names_no_file(&source)?;
@@ -74,8 +76,8 @@ pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     let mut is_by_hand = false;
     for TakenRun { world, .. } in runs {
         if world.record.start().observables().step > 0 {
-            let allowed = "one that began with a scene; a saved session tells of this one";
-            return Err(Error::value("run", "one that goes on from a saved run", allowed));
+            let allowed = "one that began with a scene: save a session instead";
+            return Err(Error::value("run", "continued from a saved run", allowed));
         }
         let now = &world.simulation;
         let steps = now.observables().step;
@@ -117,7 +119,7 @@ impl RunLink {
                 Error::value(format!("link: {name}"), &value, "the number of a step")
             })?;
             if step < after {
-                let allowed = format!("no step before {after}, which comes before it");
+                let allowed = format!("at least {after}, the step before it in the link");
                 return Err(Error::value(format!("link: {name}"), step, allowed));
             }
             let config =
@@ -128,8 +130,8 @@ impl RunLink {
             if is_first {
                 link.source = source.clone();
             } else if *source != SceneSource::default() {
-                let allowed = "said once, before the first step";
-                return Err(Error::value("link: the origin of the scene", "said twice", allowed));
+                let allowed = "given once, before the first step";
+                return Err(Error::value("link: the origin of the scene", "given twice", allowed));
             }
             changes.push((after, Config { source: SceneSource::default(), ..config }));
             after = step;
@@ -145,12 +147,12 @@ impl RunLink {
         check_names_no_file(&link.source).map(|()| link)
     }
 
-    /// What asks for the scene.
+    /// Configuration that makes the scene.
     pub(crate) fn config(&self) -> Config {
         Config { source: self.source.clone(), ..Config::default() }
     }
 
-    /// Checks what can be checked before a pile is made.
+    /// Checks the link as far as possible without making a pile.
     pub(crate) fn check(&self) -> Result<()> {
         let base = self.config().without_settling()?.settings();
         let mut settings = self.plans(&base).into_iter().flat_map(|plan| {
@@ -160,7 +162,7 @@ impl RunLink {
         settings.try_for_each(|settings| settings.validate())
     }
 
-    /// How its worlds come about, from the settings that the scene has.
+    /// Plans of the worlds, starting from the settings of the scene.
     pub(crate) fn plans(&self, base: &Settings) -> Vec<WorldPlan> {
         let plan = |world: &LinkedWorld| {
             let mut settings = *base;
@@ -175,7 +177,7 @@ impl RunLink {
     }
 }
 
-/// Refuses what starts from a file: whoever sends a link is not to choose what is opened here.
+/// Refuses a scene or an initial state from a file: the sender of a link must not choose which file is opened here.
 fn check_names_no_file(source: &SceneSource) -> Result<()> {
     let SceneSource { scene, initial, .. } = source;
     match (scene, initial) {
@@ -236,8 +238,11 @@ mod tests {
             ("http://example.org/?scene=pile", "but must be a line"),
             ("slump://run?scene=pile&to=3&bond=5", "but must be a line"),
             ("slump://run?scene=pile&to=-3", "link: to is -3, but must be the number of a step"),
-            ("slump://run?from=9&to=3", "link: to is 3, but must be no step before 9"),
-            ("slump://run?scene=pile&to=3&scene=drum&to=4", "said once"),
+            (
+                "slump://run?from=9&to=3",
+                "link: to is 3, but must be at least 9, the step before it in the link",
+            ),
+            ("slump://run?scene=pile&to=3&scene=drum&to=4", "given once"),
             ("slump://run?glue=3&to=3", "--glue"),
             ("slump://run?bond=much&to=3", "--bond is much"),
             ("slump://run?save=a&to=3", "--save is given, but must be a setting"),

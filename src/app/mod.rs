@@ -49,7 +49,7 @@ mod watched_run;
 mod window;
 mod work;
 
-/// True in a browser, which has neither files nor threads nor programs beside it.
+/// True in a browser, where there are no files, threads or other programs.
 const IN_BROWSER: bool = cfg!(target_arch = "wasm32");
 
 pub use canvas::Canvas;

@@ -6,7 +6,7 @@ use super::theme;
 use crate::Instant;
 use crate::error::Result;
 
-/// How long a notice stays, s.
+/// Time for which a notice is shown, s.
 const NOTICE_SECS: f32 = 8.0;
 
 /// A sentence for the status bar.
@@ -19,18 +19,18 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// One that begins now.
+    /// A notice that appears now.
     pub(super) fn new(text: impl Into<String>, failure: bool) -> Self {
         Self { text: text.into(), failure, since: Instant::now() }
     }
 
-    /// How long it stays yet, s; nothing once it is over.
+    /// Remaining time, s; `None` when it is over.
     pub(super) fn left_secs(&self) -> Option<f32> {
         let left_secs = NOTICE_SECS - self.since.elapsed().as_secs_f32();
         (left_secs > 0.0).then_some(left_secs)
     }
 
-    /// Its colour.
+    /// Colour of the text: that of a failure or of a success.
     pub(super) fn colour(&self, ui: &Ui) -> Color32 {
         let dark = ui.visuals().dark_mode;
         if self.failure { theme::warning(dark) } else { theme::good(dark) }
@@ -38,7 +38,7 @@ impl Notice {
 }
 
 impl From<Result<String>> for Notice {
-    /// The outcome of something, which begins now.
+    /// A notice of a result.
     fn from(outcome: Result<String>) -> Self {
         let failure = outcome.is_err();
         Self::new(outcome.unwrap_or_else(|error| error.to_string()), failure)

@@ -1,4 +1,4 @@
-//! Opening: from what a user asks for to a start, which is made where the run is computed.
+//! Requests to open something. The thread that computes the run turns a request into a [`LiveStart`].
 
 use std::path::{Path, PathBuf};
 
@@ -15,30 +15,31 @@ use crate::error::Result;
 use crate::live::{LiveStart, RunHistory, StartSource, Tell, as_json, to_bytes};
 use crate::scene::Scene;
 
-/// What a start is made from. It is data, so that it can be sent to where the run is computed.
+/// Source of a [`LiveStart`]. It is plain data, so that it can be sent to the thread or web worker that computes the
+/// run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Opening {
     /// A scene.
     Scene(#[serde(with = "as_json")] Box<Config>),
-    /// A lesson by its place, with its worlds side by side.
+    /// A lesson by its index, with its worlds side by side.
     Lesson(usize),
-    /// The content of a link, with the state of its worlds. Settings are those that it says, whatever the window
-    /// would choose.
+    /// The text of a link. Its worlds are computed up to their last steps. The window's own choice of settings is not
+    /// used.
     Link(String),
-    /// A saved run, to go on with it.
+    /// A saved run, to be continued.
     Run(Box<SavedState>),
-    /// A session, with its window as it was arranged.
+    /// A session with the arrangement of its window.
     Session(Box<LiveStart>),
-    /// The file of one of these two.
+    /// The file of a saved run or of a session.
     File(PathBuf),
-    /// One of these, with the file that it names.
+    /// Another opening, with the content of the file that it names.
     #[cfg(target_arch = "wasm32")]
     With {
-        /// Its name.
+        /// Name of the file.
         path: PathBuf,
-        /// All that is in it.
+        /// Content of the file.
         bytes: Vec<u8>,
-        /// What names it.
+        /// The opening that names the file.
         opening: Box<Opening>,
     },
 }
@@ -84,13 +85,13 @@ impl StartSource for Opening {
     }
 }
 
-/// The scene, shown and with progress told where a new pile has to settle first.
+/// Makes the scene. If a new pile has to settle first, shows it and reports progress.
 fn settled(config: &Config, tell: Tell<'_>) -> Result<Scene> {
     let mut making = SettlingProgress::new();
     config.scene(|settling| tell(making.look(&settling)))
 }
 
-/// What opens a file, by its name.
+/// Opening of a file, chosen by its name.
 pub(super) fn opening_of(path: &Path) -> Option<Opening> {
     if is_saved_run(path) {
         return Some(Opening::File(path.to_owned()));
@@ -98,7 +99,7 @@ pub(super) fn opening_of(path: &Path) -> Option<Opening> {
     Some(Opening::Scene(Box::new(dropped_scene(path)?)))
 }
 
-/// What opens a file that is a scene or a list of discs by its name.
+/// Configuration of a file that, by its name, is a scene or a list of discs.
 fn dropped_scene(path: &Path) -> Option<Config> {
     match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
         "toml" => path.to_str().map(Config::of_scene),

@@ -2,26 +2,26 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A page of the sidebar, of which one is open at a time.
+/// A page of the sidebar. At most one is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Page {
-    /// What is stepped: the scene, its grains, and what a hand does to them.
+    /// The scene, its grains, and changes by hand.
     Pile,
-    /// How it is stepped and solved.
+    /// The contact law and the solver.
     Solver,
-    /// Worlds and runs side by side, and what is measured of them.
+    /// Worlds and earlier runs side by side, and their measures.
     Compare,
-    /// How it is drawn.
+    /// Colours and other choices of drawing.
     Look,
-    /// What goes to files.
+    /// Files that can be saved.
     Save,
 }
 
 impl Page {
-    /// All of them, in their order.
+    /// All pages, in the order of their tabs.
     pub const ALL: [Self; 5] = [Self::Pile, Self::Solver, Self::Compare, Self::Look, Self::Save];
 
-    /// What its tab says.
+    /// Text of the tab.
     pub fn title(self) -> &'static str {
         match self {
             Self::Pile => "Pile",

@@ -1,4 +1,4 @@
-//! What is painted inside egui's pass by other means than its own: the scene, large areas, and the legend.
+//! Shapes that are painted inside egui's pass by Slump's own pipelines: the scene, large areas, and the legend.
 
 use std::collections::HashMap;
 
@@ -9,24 +9,24 @@ use egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 
 use crate::render::{Legend, Painter, Picture, PictureArea};
 
-/// The format of the target that callbacks draw into; whoever makes an egui renderer puts it among
-/// the callback resources.
+/// Texture format of the target that callbacks draw into. The owner of an egui renderer stores it among the callback
+/// resources.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 
-/// One painter a place in the window: their instance buffers hold what the pass is yet to draw.
+/// One painter per place in the window. Its instance buffers must live until the pass has drawn them.
 #[derive(Default)]
 struct Painters(HashMap<usize, Painter>);
 
-/// A pipeline for each colour that was ever filled: the few of a theme.
+/// One pipeline per colour that was ever filled. A theme has few colours.
 #[derive(Default)]
 struct Fills(HashMap<Color32, wgpu::RenderPipeline>);
 
-/// What a callback draws.
+/// Shape that a callback draws.
 enum Painting {
-    /// A picture in a rectangle (points). The number tells the places of one window apart.
+    /// A picture in a rectangle (points). The number identifies the place in the window.
     Scene(usize, Rect, Picture),
-    /// One colour.
+    /// An area of one colour.
     Fill(Color32),
 }
 
@@ -49,7 +49,7 @@ impl CallbackTrait for Painting {
         _encoder: &mut wgpu::CommandEncoder,
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        // Tests draw into the format that egui recommends, and say nothing of it.
+        // Tests set no format and draw into the one that egui recommends.
         let told = resources.get::<TargetFormat>();
         let format = told.map_or(wgpu::TextureFormat::Rgba8Unorm, |TargetFormat(format)| *format);
         match self {

@@ -1,4 +1,4 @@
-//! Plots against simulated time, and of any quantity against any other, for the window and for pictures of them.
+//! Plots against simulated time, and of any quantity against any other, in the window and in saved pictures.
 
 use std::sync::Arc;
 
@@ -15,34 +15,34 @@ use crate::live::Curve;
 use crate::render::numbers::si_prefix;
 use crate::sim::{Beside, Observables, Quantity};
 
-/// Least width of a plot, points: below it fewer are shown in a row.
+/// Least width of a plot, points. In a narrower window a row has fewer plots.
 pub(super) const LEAST_WIDTH: f32 = 150.0;
-/// What an axis of slump shows at least: runs are compared by eye.
+/// Least range of an axis of slump. It is the same for most runs, so that they can be compared by eye.
 pub(super) const LEAST_SLUMP: f64 = 0.4;
-/// The quantity that is known of other piles.
+/// The quantity that is plotted for other initial states.
 const OTHERS: &str = "slump";
-/// How strong the colour of single other piles is.
+/// Strength of the colour of single other piles.
 const OTHERS_STRENGTH: f32 = 0.45;
 
-/// How what is shown beside a quantity is drawn.
+/// Line styles of a quantity's companion values.
 const BESIDE: [LineStyle; 2] =
     [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
 
-/// Everything that plots are drawn from.
+/// All data of the plots.
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
     pub worlds: Vec<WorldCurve>,
-    /// The worlds of the run before, behind the others.
+    /// The worlds of the earlier run, drawn behind the others.
     pub ghosts: Vec<WorldCurve>,
     pub quantities: Vec<&'static Quantity<Observables>>,
     pub chosen: ChosenPlot,
-    /// The moment that is shown, s.
+    /// The visible moment, s.
     pub now_secs: f64,
-    /// Plots reach at least to here, s.
+    /// Least end of the time axis, s.
     pub until_secs: f64,
 }
 
-/// Draws plots for a picture, below the names of their colours where there is more than one.
+/// Draws plots for a picture, below a key of the colours if there are several worlds.
 pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     if data.worlds.len() > 1 {
         ui.horizontal_wrapped(|ui| {
@@ -55,9 +55,9 @@ pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     draw(ui, data);
 }
 
-/// Draws the plots into the space that is left. Returns the time that was clicked, s.
+/// Draws the plots into the remaining space. Returns the time that was clicked, s.
 pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
-    // Plots that left room would shrink their panel, frame by frame.
+    // If the plots left space, their panel would shrink from frame to frame.
     ui.set_min_size(ui.available_size());
     let has_chosen = data.chosen.on && data.chosen.title().is_some();
     let mut all: Vec<Option<_>> = data.quantities.iter().copied().map(Some).collect();
@@ -69,7 +69,7 @@ pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     }
     let spacing = ui.spacing().item_spacing;
     let fitting = ((ui.available_width() + spacing.x) / (LEAST_WIDTH + spacing.x)).floor();
-    // Plots wider than high read best; a high area holds two rows of them.
+    // Plots read best when they are wider than high; a high area has two rows of them.
     let high = ui.available_height() > 0.45 * ui.available_width();
     let most = if high { count.div_ceil(2) } else { count };
     let columns = most.min((fitting as usize).max(1));
@@ -145,18 +145,18 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
 }
 
-/// Where the axis of time ends, s. A ghost of a long run does not stretch that of a short one.
+/// End of the time axis, s. The ghost of a longer run does not stretch the axis.
 fn end_secs(data: &PlotData) -> f64 {
     let ends = data.worlds.iter().filter_map(|world| world.curve.last());
     ends.map(|row| row.time_secs).fold(data.until_secs, f64::max)
 }
 
-/// The quantity of other piles at the moment on screen; before a pile is released, nothing reveals its end.
+/// The part of a curve up to the visible moment: a pile that is not released yet must not reveal its end.
 fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
     points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
 }
 
-/// A world's other piles as a thin line each and their mean as a dashed one, up to the moment that is shown.
+/// Lines of a world's other piles up to the visible moment: a thin line per pile and a dashed line for their mean.
 fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
         return Vec::new();
@@ -173,7 +173,7 @@ fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
-/// What a vertical axis shows at least.
+/// Least range of a vertical axis.
 fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
     let value = |row: &Observables| (quantity.value)(row);
     let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
@@ -183,7 +183,7 @@ fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) ->
     with_room(values.chain(always.iter().copied()), quantity.logarithmic)
 }
 
-/// What a curve has to show beside a quantity.
+/// Companion values of a quantity that occur in this curve.
 fn beside(
     curve: &Curve,
     quantity: &Quantity<Observables>,
@@ -192,7 +192,7 @@ fn beside(
     quantity.beside.iter().copied().filter(has)
 }
 
-/// The title of a plot, and what its values are divided by for the prefix of their unit.
+/// Title of a plot, and the factor that belongs to the prefix of its unit. Values are divided by this factor.
 fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     let mut title = quantity.title.to_owned();
     let mut factor = 1.0;
@@ -225,34 +225,34 @@ fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
     Some(format!("{name}\n{}\n{value}", clock_text(at.x)))
 }
 
-/// The logarithm of a value along a logarithmic axis.
+/// The value on the axis: on a logarithmic axis, its logarithm.
 fn scaled(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
 
-/// What is plotted of a world.
+/// Curves of one world.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldCurve {
-    /// What tells it from the others.
+    /// Title that distinguishes the world from the others.
     pub name: String,
     pub colour: Color32,
     pub curve: Curve,
-    /// What other piles slump with its settings.
+    /// Slumps of other piles with the same settings.
     pub others: Option<Arc<Band>>,
 }
 
-/// Points of a curve at the most.
+/// Largest number of points of a curve.
 const MOST_POINTS: usize = 2_000;
 
-/// What is plotted against what.
+/// Plot of one quantity against another, chosen by the user.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ChosenPlot {
-    /// True while it shows.
+    /// True if the plot is visible.
     pub on: bool,
-    /// Names of the quantities along the axes, as tables call them: x and y.
+    /// Names of the quantities along x and y, as in tables.
     pub axes: [String; 2],
-    /// True if equal distances along an axis are equal factors.
+    /// True for logarithmic axes: x and y.
     pub logarithmic: [bool; 2],
 }
 
@@ -264,7 +264,7 @@ impl Default for ChosenPlot {
 }
 
 impl ChosenPlot {
-    /// The two boxes and switches that choose.
+    /// Shows the two lists and two buttons that choose the plot.
     pub(super) fn choose(&mut self, ui: &mut Ui) {
         for (axis, name) in [(1, "y"), (0, "x")] {
             let shown = ComboBox::from_id_salt(("axis", axis)).width(118.0);
@@ -281,18 +281,19 @@ impl ChosenPlot {
             let label = format!("Quantity along {name}");
             list.response
                 .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &label));
-            ui.toggle_value(&mut self.logarithmic[axis], format!("log {name}"))
-                .on_hover_text("Equal distances are equal factors; values up to 0 do not show.");
+            ui.toggle_value(&mut self.logarithmic[axis], format!("log {name}")).on_hover_text(
+                "Equal distances are equal factors. Values of 0 and below are not shown.",
+            );
         }
     }
 
-    /// Its title; nothing where it is of what there is not.
+    /// Title of the plot; `None` if a quantity does not exist.
     pub(super) fn title(&self) -> Option<String> {
         let [x, y] = self.axes.each_ref().map(|name| Observed::named(name));
         Some(format!("{} against {}", y?.title(), x?.title()))
     }
 
-    /// The places of rows, as the plot has them.
+    /// Coordinates of rows in the plot.
     fn points<'a>(&self, rows: impl Iterator<Item = &'a Observables>) -> Vec<[f64; 2]> {
         let [Some(x), Some(y)] = self.axes.each_ref().map(|name| Observed::named(name)) else {
             return Vec::new();
@@ -305,7 +306,7 @@ impl ChosenPlot {
         rows.filter_map(place).collect()
     }
 
-    /// Draws it; the moment that is shown has a dot.
+    /// Draws the plot, with a dot at the visible moment.
     pub(super) fn draw(&self, ui: &mut Ui, worlds: &[WorldCurve], now_secs: f64) {
         let title = RichText::new(self.title().unwrap_or_default()).small();
         ui.add(Label::new(title).truncate());
@@ -355,7 +356,7 @@ mod tests {
         plot.logarithmic = [false, true];
         assert_eq!(plot.points(rows.iter()), [[0.0, 0.0], [0.1, 1.0]]);
         assert_eq!(plot.title().unwrap(), "kinetic energy (J) against slump");
-        // What only some laws have is not there under others.
+        // A quantity that only some laws have is missing under others.
         plot.axes[1] = "bond_energy".into();
         assert!(plot.points(rows.iter()).is_empty());
         plot.axes[1] = "of another version".into();
@@ -422,11 +423,11 @@ mod tests {
         assert!(others(&alone, 1.0).is_empty());
     }
 
-    /// Numbers along x and along y of a plot that is painted alone.
+    /// Numbers along x and along y of a plot that is painted by itself.
     fn painted_numbers(data: &PlotData) -> [usize; 2] {
         let context = egui::Context::default();
         let mut painted = Vec::new();
-        // Plots find their size in their first frames.
+        // Plots find their size in the first frames.
         for _ in 0..4 {
             let size = egui::vec2(500.0, 260.0);
             let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));

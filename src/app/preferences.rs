@@ -1,4 +1,4 @@
-//! What the window remembers between starts.
+//! Choices that the window remembers between starts.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,50 +23,50 @@ use crate::render::Theme;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Light, dark, or what the desktop says.
+    /// Light, dark, or the theme of the desktop.
     pub theme: egui::ThemePreference,
-    /// How the scene is drawn; its theme follows the window's.
+    /// Style of the scene; its theme follows the window's.
     pub style: Style,
     /// The page that is open beside the scene.
     pub page: Option<Page>,
-    /// True while the bars above and below the scene are folded.
+    /// True if the bars above and below the scene are hidden.
     pub folded: bool,
-    /// True if a slider of the front starts the run again.
+    /// True if moving a main slider starts the run again.
     pub starts_again: bool,
-    /// True if the run before shows behind the present one.
+    /// True if the earlier run is drawn behind the present one.
     pub ghost: bool,
-    /// True if idle cores compute the mean over other piles.
+    /// True if idle cores compute the mean over other initial states.
     #[serde(rename = "other_piles")]
     pub ensemble: bool,
     /// True while the plots are open.
     pub plots: bool,
-    /// The quantities that are plotted, by their names.
+    /// Names of the plotted quantities.
     pub quantities: Vec<String>,
     /// Axes of the plot of two quantities.
     pub chosen_plot: ChosenPlot,
-    /// The histogram that shows, by its name in files.
+    /// Name of the visible histogram, as in files.
     pub histogram: String,
-    /// True if an arrow always says where gravity points.
+    /// True if an arrow always shows the direction of gravity.
     pub gravity: bool,
-    /// Size of the window, points; none before the first.
+    /// Size of the window, points; `None` before the first window.
     pub window_points: Option<[f64; 2]>,
-    /// Simulated time per time on the wall, of films as well.
+    /// Simulated time per wall-clock time, for films as well.
     pub speed: f64,
-    /// As fast as the machine computes, whatever `speed` says.
+    /// True to compute as fast as the machine can; then `speed` is not used.
     pub full_speed: bool,
     /// Size of exported pictures, pixels.
     pub picture_size: [u32; 2],
-    /// Pictures in a second of exported videos.
+    /// Pictures per second of exported videos.
     pub video_rate_hz: f64,
     /// Diameter of grains that the mouse adds, in mean diameters.
     pub new_grain_diameters: f64,
-    /// Where exported files go.
+    /// Folder of exported files.
     pub folder: PathBuf,
-    /// What recordings are like that are exported.
+    /// Settings of exported recordings.
     pub data: DataChoices,
     /// The scene that was open last.
     pub scene: Config,
-    /// How far the lessons have come.
+    /// Progress in the lessons.
     pub lesson: LessonPlace,
 }
 
@@ -100,7 +100,7 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// Takes over what the command line says of pictures.
+    /// Takes over the picture options of the command line.
     #[cfg(feature = "window")]
     pub(crate) fn follow(&mut self, pictures: &HeadlessOptions) -> Result<()> {
         if pictures.size.is_some() {
@@ -127,23 +127,23 @@ impl Preferences {
         Ok(())
     }
 
-    /// The pace that the preferences ask for.
+    /// Pace that the preferences ask for.
     pub(crate) fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }
 }
 
-/// How far someone has come.
+/// A user's progress in the lessons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LessonPlace {
-    /// The lesson, from 0.
+    /// Index of the lesson.
     pub at: usize,
-    /// True while a window that is told nothing else opens there.
+    /// True if a window without options opens the lessons.
     pub on: bool,
     /// The predictions, by lesson.
     pub predictions: BTreeMap<usize, Prediction>,
-    /// What was chosen before the lessons, which comes back after them.
+    /// The user's choices before the lessons, restored after them.
     pub(super) before: Option<Choices>,
 }
 
@@ -153,7 +153,7 @@ impl Default for LessonPlace {
     }
 }
 
-/// What a lesson chooses in the place of the user.
+/// Preferences that a lesson sets in place of the user.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Choices {
     pub quantities: Vec<String>,
@@ -166,7 +166,7 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// Puts them into force, and gives those that were.
+    /// Applies these choices and returns the previous ones.
     fn swap(self, preferences: &mut Preferences) -> Self {
         Self {
             quantities: std::mem::replace(&mut preferences.quantities, self.quantities),
@@ -180,7 +180,7 @@ impl Choices {
 }
 
 impl Preferences {
-    /// Begins the lesson of that number from 0, with its choices.
+    /// Begins a lesson with its choices.
     pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
         let replaced = choices.swap(self);
         let before = self.lesson.before.take().unwrap_or(replaced);
@@ -188,7 +188,7 @@ impl Preferences {
         self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
     }
 
-    /// Brings back the choices from before the lessons.
+    /// Restores the choices from before the lessons.
     pub(super) fn put_lesson_away(&mut self) {
         if let Some(before) = self.lesson.before.take() {
             before.swap(self);
@@ -196,7 +196,7 @@ impl Preferences {
     }
 }
 
-/// What is kept.
+/// Everything that the window stores between starts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(crate) struct StoredWindow {
@@ -205,7 +205,7 @@ pub(crate) struct StoredWindow {
 }
 
 impl StoredWindow {
-    /// As it is at present.
+    /// The present preferences and layout.
     pub(super) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
         Self { preferences: preferences.clone(), layout: context.memory(Clone::clone) }
     }
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn what_is_kept_reads_back() {
-        // A context that has drawn something, so that there is a layout to be kept.
+        // The context must have drawn something, otherwise it has no layout to store.
         let context = egui::Context::default();
         for _ in 0..2 {
             let _ = context.run_ui(egui::RawInput::default(), |ui| {

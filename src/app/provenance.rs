@@ -1,31 +1,30 @@
-//! Provenance of a run: its command line, and the texts in files that it is saved to.
+//! Origin of a run: its command line, and the texts in its files.
 
 use super::watched_run::WatchedRun;
 use crate::config::{Config, Provenance, asked_time_secs, joined, words_up_to};
 use crate::output::Texts;
 
-/// What is said of a run that no command line makes.
-pub(super) const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
-                       of the moment that is shown, and make another run";
+/// Text in files of a run that no command line reproduces.
+pub(super) const CHANGED: &str = "the run had other settings before, or was changed by hand: the command line and \
+                                  the settings of the visible moment make another run";
 
 impl WatchedRun {
-    /// The command line that computes the selected world from its start with the present settings, without a
-    /// window and to the last digit; none where its scene is no longer there. Changes on the way and hands that
-    /// pulled are not in it.
+    /// Command line that computes the selected world from its initial state with the present settings, bit for bit and
+    /// without a window. It lacks later changes of settings and changes by hand. `None` if the scene no longer exists.
     pub fn command_line(&self) -> Option<String> {
         let run = self.provenance(self.selected, self.config())?;
         let command = ["slump".to_owned(), "--headless".to_owned()];
         Some(joined(&[&command[..], &run.words].concat()))
     }
 
-    /// What a world is made of; nothing where its scene is no longer there.
+    /// Origin of a world. `None` if its scene no longer exists.
     fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
         let settings = self.wanted.get(world)?.settings;
         let scene = self.frame.start.as_ref()?.scene.name.clone();
         Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
     }
 
-    /// What a file says of itself that shows all worlds; of a moment, or of all their steps.
+    /// Texts for a file that shows all worlds, at one moment or at all their steps.
     pub(crate) fn texts(&self, is_of_a_moment: bool) -> Texts {
         if !self.compares() {
             return self.texts_of_world(0, is_of_a_moment);
@@ -40,7 +39,7 @@ impl WatchedRun {
     }
 
     fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
-        // How long it was to run says nothing of what it has come to.
+        // The end of the run is that of the visible or recorded time, not the duration that was asked for.
         let mut config = self.config();
         config.source.duration = None;
         let run = self.provenance(world, config);

@@ -16,24 +16,24 @@ pub(crate) struct PicturedWorld {
     pub snapshot: Arc<Snapshot>,
     /// The settings at that moment.
     pub settings: Settings,
-    /// What stands below it.
+    /// Text below the world.
     pub note: String,
 }
 
-/// A picture of the worlds, as they are seen side by side.
+/// A picture of all worlds, arranged as in the window.
 pub(crate) struct ScenePicture {
     pub worlds: Vec<PicturedWorld>,
-    /// How many stand in a row.
+    /// Number of worlds in a row.
     pub columns: usize,
     pub style: Style,
-    /// What of one is seen.
+    /// Camera of each world.
     pub camera: Camera,
     pub size: [u32; 2],
     pub texts: Texts,
 }
 
 impl ScenePicture {
-    /// Draws it.
+    /// Draws the picture.
     pub(super) fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
         let Self { worlds, columns, style, camera, size, .. } = self;
         let controls = worlds.iter().map(|world| Controls { settings: world.settings, pull: None });

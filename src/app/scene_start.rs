@@ -1,4 +1,4 @@
-//! The start of a run from a scene or from a saved run.
+//! Prepares a scene or a saved run for the window.
 
 use glam::DVec2;
 
@@ -9,17 +9,17 @@ use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 use crate::world::{Boundary, Disc, Gravity};
 
-/// Height of the walls that are drawn around a pile, in its own heights.
+/// Height of the walls that are drawn around a pile, in heights of the pile.
 const WALL_HEIGHTS: f64 = 1.1;
 
-/// The start of a saved run, which goes on in time.
+/// Prepares a saved run, which continues from its time.
 pub(super) fn start_of_run(state: SavedState) -> LiveStart {
     let SavedState { scene, simulation, tally, .. } = state;
     let config = Config::of_scene(&scene.name);
     start_with(&scene, config, simulation, tally, Vec::new())
 }
 
-/// The start of a scene, which `config` opens.
+/// Prepares a scene. `config` is the configuration that opens it.
 pub(super) fn start(scene: &Scene, config: Config) -> Result<LiveStart> {
     Ok(start_with(scene, config, scene.simulation()?, Tally::default(), walls(scene)))
 }
@@ -46,8 +46,8 @@ fn start_with(
     }
 }
 
-/// True if grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
-/// says nothing. Nor does it of what hangs from a disc that is fixed.
+/// True if the grains lie on fixed, level ground and can spread. In other scenes Δy_G, which uses heights above y = 0,
+/// means nothing; nor does it for grains that hang from a fixed disc.
 fn slumps(scene: &Scene) -> bool {
     let is_down =
         matches!(&scene.gravity, Gravity::Uniform { acceleration: g } if g.x == 0.0 && g.y < 0.0);
@@ -63,8 +63,8 @@ fn slumps(scene: &Scene) -> bool {
         && scene.boundaries.iter().all(is_level)
 }
 
-/// The walls of a pile that has not been released: a pile is at rest and needs none, but without
-/// them nobody would see what is about to happen.
+/// Walls of a pile that has not been released. The pile is at rest without them, but they show what the release will
+/// do.
 fn walls(scene: &Scene) -> Vec<Boundary> {
     if scene.name != Config::DEFAULT_SCENE || !scene.boundaries.is_empty() {
         return Vec::new();

@@ -1,8 +1,8 @@
-//! A session: all worlds with their history, and the window as it was arranged, as one file; and the file of a saved run.
+//! Files of sessions (all worlds with their history and the arrangement of the window) and of saved runs.
 //!
-//! What is computed is kept as live runs keep it, thinned: the start, some moments on the way, every change
-//! of the settings, and the moment that was shown. So it opens at once, and the moments between are computed
-//! again, bit for bit, where the timeline asks for them.
+//! A session stores runs as the live history stores them: the initial state, some later moments, all changes of
+//! settings, and the visible moment. It therefore opens at once. Moments in between are computed again, bit for bit,
+//! when the timeline asks for them.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::live::LiveStart;
 use crate::output::{Seal, write_file};
 
-/// What files begin with.
+/// First bytes of a session file.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
     format: 8,
@@ -26,7 +26,7 @@ const SEAL: Seal = Seal {
     form: "a session that the window saved",
 };
 
-/// How a window is arranged.
+/// Arrangement of the window.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Arrangement {
     pub stored: StoredWindow,
@@ -35,23 +35,23 @@ pub(crate) struct Arrangement {
     pub camera: SceneCamera,
 }
 
-/// Reads a file: the start, with how the window was arranged.
+/// Reads a session: the runs and the arrangement of the window.
 pub(super) fn open_session(path: &Path) -> Result<LiveStart> {
     let start: LiveStart = SEAL.open(path)?;
     let is_sound = start.history.as_ref().is_some_and(|history| history.is_sound());
     if !is_sound || arrangement_of(&start).is_none() {
-        let reason = format!("holds no whole session, but must be {}", SEAL.form);
+        let reason = format!("holds no complete session, but must be {}", SEAL.form);
         return Err(Error::file(path, reason));
     }
     Ok(start)
 }
 
-/// How the window is to be arranged; nothing where the start is of no session.
+/// Arrangement of the window that a session contains. `None` if `start` is not from a session.
 pub(super) fn arrangement_of(start: &LiveStart) -> Option<Arrangement> {
     ron::from_str(start.window.as_ref()?).ok()
 }
 
-/// Writes a session into a folder: the start with all that it has come to, and how the window is arranged.
+/// Writes a session into a folder.
 pub(super) fn write_session(
     folder: &Path,
     stem: &str,
@@ -62,13 +62,15 @@ pub(super) fn write_session(
         return Err(not_finite());
     }
     let path = free_path(folder, stem, SESSION_ENDING);
-    let refuse = |error| Error::value("window", "arranged so", format!("written ({error})"));
+    let refuse = |error| {
+        Error::value("window", "arranged like this", format!("one that can be written ({error})"))
+    };
     let window = Some(ron::to_string(arrangement).map_err(refuse)?);
     write_file(&path, &SEAL.written(&LiveStart { window, ..start })?)?;
     Ok(path)
 }
 
-/// Writes the moment that a run had when it was handed out: it may go on meanwhile.
+/// Writes the state that a run had when it was handed out. The run may continue meanwhile.
 pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
     let TakenRun { start, world } = run;
     if world.failure.is_some() {
@@ -81,7 +83,7 @@ pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Why a run that has failed is not saved.
+/// Error for saving a run that has failed.
 fn not_finite() -> Error {
     Error::value("state", "no longer finite", "an earlier one: drag the timeline back")
 }

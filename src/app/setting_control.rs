@@ -1,5 +1,5 @@
-//! The control of a setting, made from its declaration; a number can be dragged, typed and reset, and refuses what
-//! makes no sense.
+//! Controls of settings, made from their declarations. A number can be dragged, typed and reset; a value out of range
+//! is refused.
 
 use egui::{
     Align, ComboBox, Rect, Response, RichText, Role, Slider, SliderClamping, TextEdit, Ui,
@@ -13,8 +13,8 @@ use crate::number::millis_text;
 use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
-/// Shows a setting and changes it; `start` says what a double click on the field sets. Nothing is shown of a setting that
-/// has no control. Where the control's slider or box lies.
+/// Shows the control of a setting, if it has one, and changes the setting. A double click on the field sets the value
+/// of `start`. Returns the place of the slider or box.
 pub(super) fn show(
     ui: &mut Ui,
     about: &About,
@@ -24,7 +24,7 @@ pub(super) fn show(
     about.control.and_then(|control| show_as(ui, about, &control, settings, start))
 }
 
-/// The same with another control than the one that is declared.
+/// Like [`show`], with `control` in place of the declared control.
 pub(super) fn show_as(
     ui: &mut Ui,
     about: &About,
@@ -71,7 +71,7 @@ fn as_number(value: Value) -> Option<f64> {
     }
 }
 
-/// What a slider or a field gives; whole numbers are the nearest ones.
+/// Converts the number of a slider or field to a value of this kind. Counts are rounded.
 fn of_number(kind: Kind, number: f64) -> Option<Value> {
     match kind {
         Kind::Number => Some(Value::Number(number)),
@@ -80,13 +80,13 @@ fn of_number(kind: Kind, number: f64) -> Option<Value> {
     }
 }
 
-/// What a setting is called where there is no room for its label.
+/// Short name of a setting: its symbol if it has one.
 pub(super) fn called(about: &About) -> &'static str {
     let symbol = about.control.map_or("", |control| control.symbol);
     if symbol.is_empty() { about.name } else { symbol }
 }
 
-/// Why a typed number is not accepted.
+/// Reason why a typed number is refused.
 fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -> Option<String> {
     let is_time = is_time(control);
     let refused = |allowed| {
@@ -115,13 +115,13 @@ fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -
     }
 }
 
-/// Digits of a value that comes from a slider: the mouse knows no more.
+/// Significant digits of a value from a slider; the mouse is not more precise.
 const SLIDER_DIGITS: usize = 3;
 /// Width of the field, points.
 const FIELD_WIDTH: f32 = 76.0;
 
-/// Shows a number as a labelled field above a slider. The new value, where there is one, and where the slider lies.
-/// `default` is what a double click on the field sets, and `refuse` says why a typed value cannot be accepted.
+/// Shows a number as a labelled field above a slider. Returns the new value, if there is one, and the place of the
+/// slider. A double click on the field sets `default`; `refuse` gives the reason why a typed value is refused.
 fn number(
     ui: &mut Ui,
     control: &Control,
@@ -129,7 +129,7 @@ fn number(
     refuse: impl Fn(f64) -> Option<String>,
     value: f64,
 ) -> (Option<f64>, Rect) {
-    // What is being typed, or was and is refused. The field and the refusal lie in different places of the layout.
+    // The text that is being typed or was refused. Field and message are in different places of the layout.
     let draft_id = egui::Id::unique(("draft of", control.label));
     let draft = ui.data(|data| data.get_temp::<String>(draft_id));
     let (mut edited, mut refused) = (None, None);
@@ -182,7 +182,7 @@ fn number(
     (edited.filter(|edited| *edited != value), response.rect)
 }
 
-/// The field of a number.
+/// Shows the field of a number.
 fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: bool) -> Response {
     let mut edit = TextEdit::singleline(text)
         .id(id)
@@ -202,7 +202,7 @@ fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: 
     response
 }
 
-/// The number that was typed, or why it is not accepted.
+/// The typed number, or the reason why it is refused.
 fn typed(
     control: &Control,
     text: &str,
@@ -219,7 +219,7 @@ fn typed(
     refusal.map_or(Ok(number), Err)
 }
 
-/// Over what is below a slider: a line of its own would push that down under the mouse.
+/// Shows a refusal over the controls below the slider. As a line of its own it would move them under the mouse.
 fn show_refusal(ui: &Ui, id: egui::Id, slider: Rect, refusal: String) {
     let colour = theme::warning(ui.visuals().dark_mode);
     egui::Area::new(id)
@@ -244,7 +244,7 @@ fn shown(control: &Control, value: f64) -> String {
     written(if is_time(control) { millis(value) } else { value })
 }
 
-/// A number as people type it: short, and read back as the same number.
+/// Formats a number as people type it: short, and exact when it is read back.
 pub(super) fn written(value: f64) -> String {
     if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
         value.to_string()

@@ -1,4 +1,4 @@
-//! Progress of a pile that comes to rest.
+//! Progress of a pile that is being deposited.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,14 +10,14 @@ use crate::live::{LoadingProgress, Preview};
 use crate::scene::Settling;
 use crate::sim::{GrainView, Snapshot};
 
-/// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
+/// Orders of magnitude by which the fastest grain slows down until a pile is at rest.
 const ORDERS_OF_SETTLING: f64 = 3.5;
-/// Least time between two looks at the grains: what is faster no one sees.
+/// Least time between two pictures of the pile. More frequent pictures would not be noticed.
 const INTERVAL: Duration = Duration::from_millis(30);
-/// Before this part is done, how long it took says nothing of how long it will take.
+/// Least finished fraction from which the remaining time is estimated.
 const PART_THAT_TELLS: f64 = 0.05;
 
-/// Progress of a pile that is being made.
+/// Progress of one deposition.
 pub(super) struct SettlingProgress {
     begun: Instant,
     looked: Option<Instant>,
@@ -26,12 +26,12 @@ pub(super) struct SettlingProgress {
 }
 
 impl SettlingProgress {
-    /// One that begins now.
+    /// Progress that begins now.
     pub(super) fn new() -> Self {
         Self { begun: Instant::now(), looked: None, preview: None, part: 0.0 }
     }
 
-    /// Takes in how far it has come.
+    /// Returns the present progress, with a picture of the grains.
     pub(super) fn look(&mut self, settling: &Settling<'_>) -> LoadingProgress {
         if self.looked.is_none_or(|at| at.elapsed() >= INTERVAL) {
             self.looked = Some(Instant::now());
@@ -45,27 +45,30 @@ impl SettlingProgress {
             format!("Raining a new pile of {grains}")
         } else {
             let fastest = settling.speed_over_rest;
-            format!("A new pile of {grains} comes to rest: fastest grain {fastest:.0} × rest")
+            format!(
+                "A new pile of {grains} comes to rest: fastest grain {fastest:.0} times too fast"
+            )
         };
         let text = text + &self.left(self.begun.elapsed().as_secs_f64());
         LoadingProgress { part: self.part as f32, text, preview: self.preview.clone() }
     }
 
-    /// How long it may take, where that can be told, after so many seconds.
+    /// Text with the estimated remaining time. Empty if it is too early for an estimate.
     fn left(&self, elapsed_secs: f64) -> String {
         if self.part < PART_THAT_TELLS {
             return String::new();
         }
         let left_secs = elapsed_secs * (1.0 - self.part) / self.part;
         if left_secs < 90.0 {
-            format!(", some {:.0} s left", left_secs.ceil())
+            format!(", about {:.0} s left", left_secs.ceil())
         } else {
-            format!(", some {:.0} min left", (left_secs / 60.0).ceil())
+            format!(", about {:.0} min left", (left_secs / 60.0).ceil())
         }
     }
 }
 
-/// How much of a settling is done, 0 … 1: rain falls for a quarter of the limit at most, then the slowing down tells.
+/// Finished fraction of a deposition, 0 … 1. Rain takes at most a quarter of the time limit; afterwards the fastest
+/// grain's speed measures the progress.
 pub(super) fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
@@ -75,7 +78,7 @@ pub(super) fn settled_part(settling: &Settling) -> f64 {
     0.5 * rained * (1.0 + slowed.clamp(0.0, 1.0))
 }
 
-/// Where grains are, with the box and the base below: it shrinks as they come down.
+/// Corners of the area with all grains, the box and the base. It shrinks as the grains come down.
 fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
     let diameter = snapshot.surroundings.mean_diameter;
     let ends = |side: DVec2| {
@@ -98,7 +101,7 @@ mod tests {
         let (mut parts, mut tops) = (Vec::new(), Vec::new());
         let mut diameter = 0.0;
         settle(&pile, |settling| {
-            // As if each look were the first for a while.
+            // Forget the last picture, so that each call makes a new one.
             making.looked = None;
             let told = making.look(&settling);
             let preview = told.preview.expect("something to see");
@@ -112,7 +115,8 @@ mod tests {
         })
         .expect("a pile");
         assert!(parts.is_sorted() && parts[0] < 0.1 && parts[parts.len() - 1] > 0.9, "{parts:?}");
-        // Five rows of eight lie in the box, uneven by a grain or so; the view ends a diameter above the highest.
+        // Five rows of eight grains fit into the box, with an error of about one; the view ends a diameter above the
+        // highest.
         let rows = 40.0 / 8.0;
         let top = tops[tops.len() - 1] / diameter;
         assert!((rows..rows + 3.0).contains(&top), "the view ends above the pile: {top} d");
@@ -125,7 +129,7 @@ mod tests {
         making.part = 0.01;
         assert_eq!(making.left(1.0), "");
         making.part = 0.25;
-        assert_eq!(making.left(4.0), ", some 12 s left");
-        assert_eq!(making.left(100.0), ", some 5 min left");
+        assert_eq!(making.left(4.0), ", about 12 s left");
+        assert_eq!(making.left(100.0), ", about 5 min left");
     }
 }

@@ -1,5 +1,5 @@
-//! The state of the user interface as a whole, and actions that change more than one of its parts. Knows neither window
-//! nor GPU.
+//! The whole state of the user interface, and actions that change several of its parts. It does not depend on a window
+//! or a GPU.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,39 +25,39 @@ use crate::live::{Command, Live, LiveFrame, LiveStart};
 
 /// The state of the user interface.
 pub struct AppState {
-    /// The run that is shown.
+    /// The visible run.
     pub run: WatchedRun,
-    /// What outlives the window.
+    /// Choices that outlive the window.
     pub preferences: Preferences,
-    /// Which part of the scene shows.
+    /// The visible part of the scene.
     pub camera: SceneCamera,
     /// True in a lesson.
     pub touring: bool,
-    /// What the present settings make of other piles.
+    /// Runs of other initial states with the present settings.
     pub ensemble: Ensemble,
-    /// Where controls lie, points: for tests that drive the window from outside.
+    /// Places of controls, points, for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
-    /// The panels, with the state that each has to itself.
+    /// The panels and their own state.
     pub panels: Panels,
-    /// Set if the window is to open its graphics device again.
+    /// True if the window must open its graphics device again.
     pub(crate) restart_graphics: bool,
     notice: Option<Notice>,
     exports: Exports,
-    /// How the panels of a session that is being opened lay.
+    /// Layout of the panels in a session that is being opened.
     layout: Option<egui::Memory>,
     seen_loads: u64,
     seen_refusal: Option<Arc<str>>,
 }
 
 impl AppState {
-    /// The state at the start of the program; loading `config` begins.
+    /// Makes the state at the start of the program and begins to load `config`.
     pub fn new(live: Live, config: Config, preferences: Preferences) -> Self {
         let mut state = Self::idle(live, preferences);
         state.load(config);
         state
     }
 
-    /// The same, with nothing loaded.
+    /// Makes the state at the start of the program, with nothing loaded.
     pub(crate) fn idle(live: Live, preferences: Preferences) -> Self {
         let mut state = Self {
             run: WatchedRun::new(live),
@@ -74,7 +74,7 @@ impl AppState {
             seen_loads: 0,
             seen_refusal: None,
         };
-        // A window that was closed in a lesson and is opened for something else has the user's own choices.
+        // The window may have been closed in a lesson: if it opens something else, the user's own choices apply again.
         state.preferences.put_lesson_away();
         state.set_pace();
         state
@@ -115,7 +115,7 @@ impl AppState {
         self.exports.is_writing()
     }
 
-    /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
+    /// Fetches the newest frame. The controls follow it unless a change of theirs is under way.
     pub(super) fn refresh(&mut self, context: &Context) {
         self.run.frame = self.run.live.latest().clone();
         self.follow_loads();
@@ -124,7 +124,7 @@ impl AppState {
             // The first load was cancelled or failed. The default scene needs no deposition.
             self.load(Config::default());
         }
-        // The same words again are another refusal.
+        // Each refusal is a new allocation, so equal text at another address is a new refusal.
         let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
         if address(&self.run.frame.refusal) != address(&self.seen_refusal) {
             self.seen_refusal.clone_from(&self.run.frame.refusal);
@@ -143,7 +143,7 @@ impl AppState {
         self.ensemble.follow(context, &self.run.frame, self.preferences.ensemble);
     }
 
-    /// Begins again with a start that was not there before.
+    /// Resets view and selection when a new scene was loaded.
     fn follow_loads(&mut self) {
         if self.run.frame.loads == self.seen_loads {
             return;
@@ -159,12 +159,12 @@ impl AppState {
         }
     }
 
-    /// Says in the status bar for a while what went wrong.
+    /// Shows a failure in the status bar for a while.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         self.notice = Some(Notice::new(text, true));
     }
 
-    /// What the status bar has to say, and for how long yet, s.
+    /// The notice of the status bar and its remaining time, s.
     pub fn notice(&self) -> Option<(&Notice, f32)> {
         let notice = self.notice.as_ref()?;
         Some((notice, notice.left_secs()?))
@@ -179,18 +179,18 @@ impl AppState {
         self.open(Opening::Scene(Box::new(config)));
     }
 
-    /// Opens a saved run, to go on with it.
+    /// Opens a saved run, to be continued.
     pub fn load_run(&mut self, state: SavedState) {
         self.open(Opening::Run(Box::new(state)));
     }
 
-    /// Opens the file of a saved run or of a session, to go on with it.
+    /// Opens the file of a saved run or of a session, to be continued.
     pub fn load_saved(&mut self, path: &Path) {
         self.exports.data.saved_run = path.display().to_string();
         self.open(Opening::File(path.to_owned()));
     }
 
-    /// Has a start made where the run is computed. Other than for a lesson, lessons are left.
+    /// Sends the opening to the solver thread. Leaves the lessons unless a lesson is opened.
     pub(crate) fn open(&mut self, opening: Opening) {
         if !matches!(opening, Opening::Lesson(_)) {
             self.leave_lessons();
@@ -198,7 +198,7 @@ impl AppState {
         self.run.live.send(Command::Load(Box::new(opening)));
     }
 
-    /// Goes to a lesson, or to the last one if there are not so many.
+    /// Shows a lesson, or the last one if `at` is too large.
     pub fn visit(&mut self, at: usize) {
         let at = at.min(LESSONS.len() - 1);
         self.preferences.begin_lesson(at, LESSONS[at].choices());
@@ -209,7 +209,7 @@ impl AppState {
         self.open(Opening::Lesson(at));
     }
 
-    /// Ends the lessons, with the worlds as they are.
+    /// Ends the lessons and keeps their worlds.
     fn leave_lessons(&mut self) {
         if std::mem::take(&mut self.touring) {
             self.preferences.put_lesson_away();
@@ -218,7 +218,7 @@ impl AppState {
         }
     }
 
-    /// Saves the moment that the selected world has come to.
+    /// Saves the visible moment of the selected world.
     fn save_state(&mut self, context: &Context) {
         let run = self.run.take(self.run.selected);
         self.exports.write(context, &self.preferences.folder, vec![run], |folder, _, runs| {
@@ -226,7 +226,7 @@ impl AppState {
         });
     }
 
-    /// Saves all worlds with their history, and how the window is arranged.
+    /// Saves all worlds with their history and the arrangement of the window.
     pub(super) fn save_session(&mut self, context: &Context) {
         if self.run.frame.worlds.is_empty() {
             return;
@@ -236,7 +236,7 @@ impl AppState {
         let arrangement = Arrangement { stored, touring, selected, camera };
         let (sender, run) = channel();
         let hand_on = move |start: LiveStart| {
-            // Whoever asked may have gone.
+            // The receiver may be gone.
             let _ = sender.send(start);
         };
         self.run.live.send(Command::TakeAll(Box::new(hand_on)));
@@ -248,13 +248,12 @@ impl AppState {
         });
     }
 
-    /// Has the link of the present moment of all worlds copied.
+    /// Copies a link to the present moment of all worlds.
     pub fn copy_link(&mut self, context: &Context) {
         self.exports.copy_link(context, self.run.take_all());
     }
 
-    /// Arranges the window as it was when a session was saved. What belongs to this window and its user stays:
-    /// its size, and where files go.
+    /// Restores the arrangement of the window from a session, except the window's size and the folder of files.
     fn arrange(&mut self, arrangement: Arrangement) {
         let Arrangement { stored, touring, selected, camera } = arrangement;
         let Preferences { window_points, folder, .. } = self.preferences.clone();
@@ -264,7 +263,7 @@ impl AppState {
         self.set_pace();
     }
 
-    /// Puts the panels where they were when a session was saved.
+    /// Restores the places of the panels from a session.
     pub(super) fn restore_layout(&mut self, context: &Context) {
         if let Some(layout) = self.layout.take() {
             context.memory_mut(|memory| memory.data = layout.data);

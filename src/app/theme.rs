@@ -8,10 +8,10 @@ use egui::{
 
 use crate::render::{Colour, Theme};
 
-/// The font of figures, which has all the symbols that labels use.
+/// Font of all text. It contains all symbols that labels use.
 const FONT: &[u8] = include_bytes!("../../assets/fonts/DejaVuSansCondensed.ttf");
 const BOLD_FONT: &[u8] = include_bytes!("../../assets/fonts/DejaVuSansCondensed-Bold.ttf");
-/// Name of the family of headings.
+/// Name of the font family of headings.
 const BOLD: &str = "bold";
 
 /// The family of headings.
@@ -19,33 +19,33 @@ pub(crate) fn bold() -> FontFamily {
     FontFamily::Name(BOLD.into())
 }
 
-/// A colour of a picture as egui has it.
+/// Converts a colour of a picture to egui's type.
 pub(crate) fn color32(colour: Colour) -> Color32 {
     let [red, green, blue, alpha] = colour.to_rgba8().0;
     Color32::from_rgba_unmultiplied(red, green, blue, alpha)
 }
 
-/// What calls for action: the release button, the present time in plots.
+/// Accent colour: the release button, the present time in plots.
 pub(crate) fn accent(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x4d, 0xa3, 0xd9) } else { Color32::from_rgb(0x00, 0x6c, 0xa8) }
 }
 
-/// Words on the accent.
+/// Colour of words on the accent colour.
 pub(crate) fn on_accent(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x12, 0x15, 0x1a) } else { Color32::WHITE }
 }
 
-/// What went wrong.
+/// Colour of failures.
 pub(crate) fn warning(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0xf0, 0x8a, 0x4a) } else { Color32::from_rgb(0xb8, 0x46, 0x00) }
 }
 
-/// What went well.
+/// Colour of successes.
 pub(crate) fn good(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x5c, 0xc9, 0x8a) } else { Color32::from_rgb(0x0a, 0x7d, 0x46) }
 }
 
-/// Colours of the compared worlds, which colour-blind people tell apart (Okabe & Ito).
+/// Colours of the compared worlds. Colour-blind people can distinguish them (Okabe & Ito).
 pub(crate) fn world_colour(index: usize, dark: bool) -> Color32 {
     const COLOURS: [u32; 6] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];
     const ON_DARK: [u32; 6] = [0x56b4e9, 0xe8772e, 0x2fc49a, 0xe09cc4, 0xf0bf4c, 0x9a8cff];
@@ -53,7 +53,7 @@ pub(crate) fn world_colour(index: usize, dark: bool) -> Color32 {
     color32(Colour::hex(colours[index % colours.len()]))
 }
 
-/// Sets a context up: fonts, spacing and colours of both themes.
+/// Sets fonts, spacing and the colours of both themes.
 pub fn install(context: &egui::Context) {
     context.set_fonts(fonts());
     context.all_styles_mut(|style| {
@@ -142,14 +142,14 @@ mod tests {
     #[test]
     fn contrast_is_that_of_the_guidelines() {
         assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
-        // The example of the guidelines: #777777 on white is just below 4.5.
+        // The guidelines' example: #777777 on white is just below 4.5.
         let grey = contrast(Color32::from_gray(0x77), Color32::WHITE);
         assert!((4.47..4.49).contains(&grey), "{grey}");
     }
 
     #[test]
     fn words_can_be_read_on_every_ground() {
-        /// Level AA of words of any size.
+        /// Least contrast of level AA, for words of any size.
         const LEAST: f64 = 4.5;
         let context = egui::Context::default();
         install(&context);

@@ -1,4 +1,4 @@
-//! Fig. 5a by hand: mean slump against Δt, a point for each pile that was released.
+//! Fig. 5a by hand: mean slump against Δt, with one point per released pile.
 
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{HoverPosition, Line, Points};
@@ -12,35 +12,35 @@ use crate::live::Controls;
 use crate::number::millis_text;
 use crate::sim::Settings;
 
-/// What is written above the plot.
+/// Title of the plot.
 const TITLE: &str = "slump against Δt";
-/// What a point is.
-const HINT: &str = "A point for each pile that was released: the mean slump of its other piles at the end of the \
-                    scene, with its 95 % interval.";
-/// The time steps that the axis shows at least, ms.
+/// Hover text: meaning of a point.
+const HINT: &str = "One point per released pile: the mean slump of its other piles at the end of the scene, with \
+                    its 95 % interval.";
+/// Least range of the time step axis, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
-/// Half the width of the ends of an error bar, decades.
+/// Half the width of the caps of an error bar, decades.
 const CAP: f64 = 0.03;
 
-/// Mean slump at the end of the scene.
+/// One point: the mean slump at the end of the scene.
 #[derive(Clone, Debug, PartialEq)]
 struct FigurePoint {
     time_step_secs: f64,
     mean: f64,
-    /// Half the width of the 95 % interval.
+    /// Half the width of the 95 % interval of the mean.
     half: f64,
     /// Number of piles.
     count: usize,
 }
 
 impl FigurePoint {
-    /// Place along the axis of Δt: the logarithm of milliseconds.
+    /// Coordinate along the Δt axis: the decimal logarithm of milliseconds.
     fn decades(&self) -> f64 {
         (1e3 * self.time_step_secs).log10()
     }
 }
 
-/// Points whose settings differ in Δt only.
+/// Points whose settings differ only in Δt.
 #[derive(Clone, Debug)]
 struct FigureSeries {
     name: String,
@@ -54,7 +54,7 @@ struct FigureSeries {
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
 impl TimeStepFigure {
-    /// The figure of the piles that were released; nothing if no pile has an interval yet.
+    /// Makes the figure of the released piles. `None` if no pile has an interval yet.
     pub(super) fn new<'a>(
         released: impl Iterator<Item = &'a Released>,
         is_dark: bool,
@@ -91,7 +91,7 @@ impl TimeStepFigure {
         (!series.is_empty()).then_some(Self(series))
     }
 
-    /// Draws the figure into the space that is left; `head` adds to its title.
+    /// Draws the figure into the remaining space. `head` adds to its title line.
     pub(super) fn draw(&self, ui: &mut Ui, head: impl FnOnce(&mut Ui)) {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -132,7 +132,7 @@ impl TimeStepFigure {
         });
     }
 
-    /// The points as a table.
+    /// The points as CSV.
     pub(super) fn table(&self) -> String {
         let mut text = "series,bond,time_step,slump,half_interval,piles\n".to_owned();
         for FigureSeries { name, bond, points, .. } in &self.0 {
@@ -144,7 +144,7 @@ impl TimeStepFigure {
     }
 }
 
-/// The name of a point says all of it.
+/// Text at a point: the point's name, which contains all values.
 fn hover_text(position: &HoverPosition<'_>) -> Option<String> {
     match position {
         HoverPosition::NearDataPoint { plot_name, .. } => Some((*plot_name).to_owned()),

@@ -1,4 +1,4 @@
-//! Titles of worlds that are compared: each says which of its settings differ from those of the others.
+//! Titles of compared worlds. Each names the settings in which its world differs from the others.
 
 use super::budget::BUDGETS;
 use super::panels::FRONT_SETTINGS;
@@ -9,12 +9,12 @@ use crate::number::millis_text;
 use crate::setting::Value;
 use crate::sim::Settings;
 
-/// Settings whose differences follow from those of others.
+/// Settings that follow from other settings; a title omits them.
 const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
-/// And those that follow from the method.
+/// Settings that follow from the solver; a title that names the solver omits them.
 const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
 
-/// What tells one of such worlds from the others: each setting in which any of them differ, or Bond and Δt.
+/// Title of a world: each setting in which any two worlds differ. If none differs, Bond and Δt.
 pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     let Some(&Controls { settings, .. }) = worlds.get(index) else {
         return String::new();
@@ -33,7 +33,7 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
         (true, Some(_)) => names().collect(),
         (true, None) => vec!["bond", "dt"],
     };
-    // Methods that are compared go by a name where they have one.
+    // A solver with the settings of a preset is called by the preset's name.
     let named =
         BUDGETS.iter().find(|budget| differs_in_method && budget.settings == settings.solver);
     let is_told = |name: &&str| named.is_none() || !["solver", "max-sweeps"].contains(name);
@@ -43,7 +43,7 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     all.join(", ")
 }
 
-/// The caption of a world in a picture: its number among several, its title, Bond and Δt in any case, and the time.
+/// Caption of a world in a picture: its number if there are several worlds, its title, Bond, Δt and the time.
 pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> String {
     let Some(world) = worlds.get(index) else { return String::new() };
     let mut text = title_among(worlds, index);
@@ -56,7 +56,7 @@ pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> Stri
     format!("{number}{text}, t = {}", clock_text(time_secs))
 }
 
-/// The settings of a run in which it differs from another.
+/// The settings in which a run differs from another.
 pub(super) fn title_against(one: &Settings, other: &Settings) -> String {
     title_among(&[one, other].map(|&settings| Controls { settings, pull: None }), 0)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::state::AppState;
 
-/// What there is to tell: `size` of the window in pixels, `scale` pixels a point.
+/// State of the window as JSON. `size` is in pixels, `scale` in pixels per point.
 pub(super) fn told(
     state: &AppState,
     size: [u32; 2],
@@ -25,20 +25,20 @@ pub(super) fn told(
         "time_secs": last.time_secs,
         "slump": last.slump,
         "state_hash": world.map(|world| world.snapshot.state_hash()),
-        // Of the next step, as the solver's thread has them.
+        // Parameters of the next step, as the solver thread has them.
         "parameters": world.map(|world| world.controls.settings.parameters),
         "worlds": state.run.frame.worlds.len(),
-        // Of the selected world.
+        // Values of the selected world.
         "grains": world.map_or(0, |world| world.snapshot.grains.len()),
-        // Those of the selected world that have come to their end, and threads that compute them.
+        // Other piles of the selected world that have finished, and the threads that compute them.
         "other_piles": state.ensemble.summary(state.run.selected).map_or(0, |it| it.band.count),
         "other_threads": state.ensemble.threads(),
-        // From 1; 0 where none is being taken.
+        // Number of the lesson, from 1; 0 outside the lessons.
         "lesson": if state.touring { state.preferences.lesson.at + 1 } else { 0 },
         "steps_per_sec": state.run.frame.steps_per_sec,
-        // How often a graphics device was opened.
+        // Number of graphics devices opened so far.
         "devices": devices,
-        // That the solver's thread has published.
+        // Number of frames that the solver thread has published.
         "frames": state.run.frame.number,
         "window": size,
         // Left, top, right and bottom, pixels of the window.

@@ -1,4 +1,4 @@
-//! The window as a function of its state: the panels, the keys that act wherever the mouse is, and dropped files.
+//! The window as a function of its state: the panels, the keys that work everywhere, and dropped files.
 
 use egui::{Context, Event, Key, Modifiers, Ui};
 
@@ -26,7 +26,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     requests.into_iter().for_each(|request| state.carry_out(&context, request));
 }
 
-/// Opens the last file that was dropped in this frame. A page has to wait for its content.
+/// Opens the last file that was dropped in this frame. A browser has to wait for the content of the file.
 fn take_dropped_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
     let Some(file) = dropped.filter(|_| !IN_BROWSER) else { return };
@@ -45,7 +45,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
         state.panels.trust.is_open = false;
         state.panels.lesson_bar.shows_summary = false;
     }
-    // A focused field or slider has a use of its own for letters and arrows.
+    // A focused field or slider uses letters and arrow keys itself.
     if context.egui_wants_keyboard_input() {
         return;
     }
@@ -68,7 +68,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     take_link(context, state);
     let pressed = |key| pressed(Modifiers::NONE, key);
     let asked = [Key::Space, Key::ArrowRight, Key::ArrowLeft, Key::R].map(pressed);
-    // While a start is made there is nothing to play; what was there waits for how that ends.
+    // While a scene is being loaded the earlier run must wait: the load may be cancelled.
     if let (None, [space, right, left, reset]) = (&state.run.frame.loading, asked) {
         if space {
             state.run.toggle_play();
@@ -102,7 +102,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     }
 }
 
-/// Opens a link that is pasted where no field takes it.
+/// Opens a link that is pasted outside of a text field.
 fn take_link(context: &Context, state: &mut AppState) {
     let pasted = context.input(|input| {
         input.events.iter().rev().find_map(|event| match event {

@@ -1,9 +1,9 @@
-//! The folders that belong to the program in the user's own.
+//! Slump's own folders in the user's home.
 
 use std::path::PathBuf;
 
-/// The program's folder in the user's folder: `%APPDATA%` on Windows, elsewhere the one that a variable of the environment
-/// names or else the one that lies in their home.
+/// Slump's folder for this user: in `%APPDATA%` on Windows, elsewhere in the folder that the environment variable
+/// names, or else in `in_home` of the home folder.
 pub(super) fn user_folder(variable: &str, in_home: &str) -> Option<PathBuf> {
     let variable = if cfg!(windows) { "APPDATA" } else { variable };
     let named = std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());

@@ -1,4 +1,4 @@
-//! The run that the window watches: the live run, its newest frame, the wanted controls and the selection.
+//! The run that the window shows: the live run, its newest frame, the wanted settings and the selection.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -24,21 +24,21 @@ pub struct GrainRef {
 
 /// The run that the window shows.
 pub struct WatchedRun {
-    /// The solver's thread.
+    /// Handle of the solver thread.
     pub live: Live,
-    /// Its newest frame.
+    /// Newest frame of the solver thread.
     pub frame: LiveFrame,
-    /// The settings that the controls show, one entry per world. They are ahead of the frame by the commands on the way.
+    /// Settings that the controls show, one entry per world. They are ahead of the frame while a command is under way.
     pub(crate) wanted: Vec<Controls>,
-    /// The settings that a slider of the front is being dragged to, and their world.
+    /// World and settings while a main slider is dragged.
     pub(crate) draft: Option<(usize, Settings)>,
-    /// The world that the controls are about.
+    /// The world that the controls change.
     pub(crate) selected: usize,
     /// The grain whose contacts are listed.
     pub pinned: Option<GrainRef>,
 }
 
-/// A run that is to be written down.
+/// A run that was handed out to be written to a file.
 pub(crate) struct TakenRun {
     pub start: Arc<LiveStart>,
     pub world: WorldHistory,
@@ -57,7 +57,7 @@ impl WatchedRun {
         }
     }
 
-    /// Follows the newest frame, unless a change of the controls is on its way.
+    /// Follows the newest frame, unless a change of the controls is under way.
     pub(super) fn follow_frame(&mut self) {
         let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
         if in_step || self.wanted.len() != self.frame.worlds.len() {
@@ -78,37 +78,37 @@ impl WatchedRun {
         world.is_some_and(|world| grain < world.snapshot.grains.len())
     }
 
-    /// The world that the controls are about, once there is one.
+    /// The world that the controls change, once there is one.
     pub fn world(&self) -> Option<&WorldFrame> {
         self.frame.worlds.get(self.selected)
     }
 
-    /// The settings that the controls want of the selected world.
+    /// Wanted settings of the selected world.
     pub(crate) fn wanted_settings(&self) -> Option<Settings> {
         self.wanted.get(self.selected).map(|wanted| wanted.settings)
     }
 
-    /// The settings that the controls want of the selected world, and the start, which has their defaults.
+    /// Wanted settings of the selected world, and the initial state, which has their defaults.
     pub(crate) fn wanted_and_start(&self) -> Option<(Settings, Arc<LiveStart>)> {
         Some((self.wanted_settings()?, self.frame.start.clone()?))
     }
 
-    /// The configuration that made the run that is shown. A load that is cancelled or fails does not change it.
+    /// Configuration of the visible run. A load that is cancelled or fails does not change it.
     pub(crate) fn config(&self) -> Config {
         self.frame.start.as_ref().map_or_else(Config::default, |start| start.config.clone())
     }
 
-    /// True if the open scene is a heap, whose slump means something.
+    /// True if the scene is a heap, whose slump has a meaning.
     pub(crate) fn slumps(&self) -> bool {
         self.frame.start.as_ref().is_some_and(|start| start.slumps)
     }
 
-    /// True while worlds are compared.
+    /// True if there are several worlds.
     pub(crate) fn compares(&self) -> bool {
         self.frame.worlds.len() > 1
     }
 
-    /// True if there are worlds, and no start is being made.
+    /// True if there are worlds and nothing is being loaded.
     pub(crate) fn is_ready(&self) -> bool {
         !self.frame.worlds.is_empty() && self.frame.loading.is_none()
     }
@@ -118,7 +118,7 @@ impl WatchedRun {
         self.frame.start.as_ref().map_or([DVec2::ZERO, DVec2::ONE], |start| start.view)
     }
 
-    /// Simulated time that the scene asks for, s.
+    /// Duration of the scene, s of simulated time.
     pub(crate) fn duration_secs(&self) -> f64 {
         self.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs)
     }
@@ -128,19 +128,19 @@ impl WatchedRun {
         title_among(&self.wanted, world)
     }
 
-    /// The title of a world after the number by which headings call it.
+    /// Title of a world with its number in front.
     pub(crate) fn numbered_title(&self, world: usize) -> String {
         format!("{}: {}", world + 1, self.title(world))
     }
 
-    /// The slump of a world of a heap in words.
+    /// Slump of a world as text, if the scene is a heap.
     pub(crate) fn slump_text(&self, world: usize) -> String {
         let world = self.frame.worlds.get(world).filter(|_| self.slumps());
         world
             .map_or_else(String::new, |world| format!("Δy {:.3}", world.snapshot.observables.slump))
     }
 
-    /// The beginning of the names of saved files.
+    /// First part of the names of saved files.
     pub(crate) fn file_stem(&self) -> String {
         let name = self.frame.start.as_ref().map_or("scene", |start| start.scene.name.as_str());
         let worlds = self.frame.worlds.iter();
@@ -148,8 +148,8 @@ impl WatchedRun {
         stem(name, &settings, self.frame.time_secs())
     }
 
-    /// The last run before, if at most one of its worlds had other settings than now. A ghost of another comparison would
-    /// be next to numbers that are not its own.
+    /// The last earlier run, if at most one of its worlds had settings other than now. The ghost of another comparison
+    /// would appear next to numbers of unrelated runs.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         let (last, worlds) = (self.undo_target()?, &self.frame.worlds);
         let others = last.worlds.iter().zip(worlds.iter());
@@ -202,7 +202,7 @@ impl WatchedRun {
         self.live.send(Command::Play);
     }
 
-    /// Releases, plays or pauses.
+    /// Releases the pile, plays or pauses.
     pub(crate) fn toggle_play(&mut self) {
         let command = if self.frame.playing { Command::Pause } else { Command::Play };
         self.live.send(command);
@@ -213,25 +213,26 @@ impl WatchedRun {
         self.live.send(Command::Step);
     }
 
-    /// Goes one step back in the recording.
+    /// Goes back one step in the recording.
     pub(crate) fn step_back(&mut self) {
         let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
         let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
         self.live.send(Command::Seek(time_secs.max(0.0)));
     }
 
-    /// Asks for a world's run. It comes between two steps; nothing comes if that world is gone.
+    /// Asks the solver thread for a world's run, which it hands out between two steps. The channel stays empty if that
+    /// world no longer exists.
     pub(crate) fn take(&mut self, world: usize) -> Receiver<TakenRun> {
         let (sender, receiver) = channel();
         let hand_on = move |start, world| {
-            // Whoever asked may have gone.
+            // The receiver may be gone.
             let _ = sender.send(TakenRun { start, world });
         };
         self.live.send(Command::Take(world, Box::new(hand_on)));
         receiver
     }
 
-    /// Asks for the runs of all worlds.
+    /// Asks the solver thread for the runs of all worlds.
     pub(crate) fn take_all(&mut self) -> Vec<Receiver<TakenRun>> {
         (0..self.frame.worlds.len()).map(|world| self.take(world)).collect()
     }

@@ -1,4 +1,4 @@
-//! Work that takes longer than the window may wait: on a thread of its own, with how far it is, and to be stopped.
+//! Long work on a thread of its own, with a progress bar and a button that stops it.
 
 #[cfg(target_arch = "wasm32")]
 use std::cell::RefCell;
@@ -15,45 +15,45 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::live::receive_within;
 
-/// Least time between two looks at what the window says, and between two frames that show how far it is.
+/// Time between two checks for a cancellation, and least time between two updates of the progress bar.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// What may be done on another thread, where there is one.
+/// Bound on closures that another thread can run.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) trait MaySend: Send {}
 #[cfg(not(target_arch = "wasm32"))]
 impl<T: Send> MaySend for T {}
-/// What may be done on another thread, where there is one.
+/// Bound on closures that another thread could run. The browser version has no threads, so it is empty here.
 #[cfg(target_arch = "wasm32")]
 pub(crate) trait MaySend {}
 #[cfg(target_arch = "wasm32")]
 impl<T> MaySend for T {}
 
-/// Work that is going on.
+/// Work in progress. Dropping it cancels it.
 pub(crate) struct Work<T> {
     shared: Arc<WorkState>,
     doer: Doer<T>,
 }
 
-/// Who does it.
+/// The place where the work is done.
 enum Doer<T> {
-    /// A thread.
+    /// On a thread.
     #[cfg(not(target_arch = "wasm32"))]
     Thread { outcome: Receiver<Result<T>>, thread: Option<JoinHandle<()>> },
-    /// Whoever asks what became of it, where no thread can be made: as in a page.
+    /// In the caller of [`Work::outcome`], because the browser version cannot start threads.
     #[cfg(target_arch = "wasm32")]
     Asker(RefCell<Box<dyn FnMut() -> Option<Result<T>>>>),
 }
 
-/// What window and thread tell each other.
+/// State that the window and the working thread share.
 #[derive(Default)]
 struct WorkState {
-    /// The part that is done, 0 … 1, as the bits of an f32.
+    /// Fraction of the work that is done, 0 … 1, as the bits of an f32.
     done: AtomicU32,
     is_cancelled: AtomicBool,
 }
 
-/// The thread's side of it.
+/// Handle by which the work reports its progress and sees a cancellation.
 pub(crate) struct Reporter {
     shared: Arc<WorkState>,
     context: egui::Context,
@@ -61,7 +61,8 @@ pub(crate) struct Reporter {
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Starts it, once the runs that it is about have been handed out; with fewer of them where it is given up before.
+    /// Starts the work once all its runs have arrived. If the user cancels earlier, the work gets the runs that
+    /// arrived.
     pub(crate) fn start<R: Send + 'static>(
         context: &egui::Context,
         runs: Vec<Receiver<R>>,
@@ -105,7 +106,7 @@ impl<T: Send + 'static> Doer<T> {
     }
 }
 
-/// What is to be done once all runs are there.
+/// Work that begins when all runs have arrived.
 struct Job<R, Act> {
     coming: Vec<Receiver<R>>,
     came: Vec<R>,
@@ -113,7 +114,7 @@ struct Job<R, Act> {
 }
 
 impl<R, Act> Job<R, Act> {
-    /// Waits a while for a run that is not there, else does the work. What came of it, once it is done.
+    /// Waits up to `patience` for the next run; once all are there, does the work. Returns `None` until it is done.
     fn advance<T>(&mut self, reporter: &Reporter, patience: Duration) -> Option<Result<T>>
     where
         Act: FnOnce(Vec<R>, &Reporter) -> Result<T>,
@@ -132,12 +133,12 @@ impl<R, Act> Job<R, Act> {
 }
 
 impl<T> Work<T> {
-    /// Ends it where it next looks.
+    /// Asks the work to end at its next check.
     fn cancel(&self) {
         self.shared.is_cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Ends it and waits until it has: files are closed before the process may end.
+    /// Cancels the work and waits for its end, so that files are closed before the process ends.
     pub(super) fn end(&mut self) {
         self.cancel();
         #[cfg(not(target_arch = "wasm32"))]
@@ -147,10 +148,11 @@ impl<T> Work<T> {
         }
     }
 
-    /// Shows how far it is by that `name`, and the button that stops it.
+    /// Shows a progress bar called `name` and a button that stops the work.
     pub(super) fn show(&self, ui: &mut Ui, name: &str, stop: &str, hint: &str) {
         ui.horizontal(|ui| {
-            // Not where the button was that started it: a second click there is none on this one.
+            // The button is at the other end of the line than the button that started the work, so that a double click
+            // does not stop it.
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button(stop).on_hover_text(hint).clicked() {
                     self.cancel();
@@ -161,7 +163,7 @@ impl<T> Work<T> {
         });
     }
 
-    /// What became of it, once it has ended.
+    /// Result of the work, once it has ended.
     pub(crate) fn outcome(&self) -> Option<Result<T>> {
         match &self.doer {
             #[cfg(not(target_arch = "wasm32"))]
@@ -169,7 +171,7 @@ impl<T> Work<T> {
                 Ok(outcome) => Some(outcome),
                 Err(TryRecvError::Empty) => None,
                 Err(TryRecvError::Disconnected) => {
-                    Some(Err(Error::value("work", "ended by a fault", "ended when it is done")))
+                    Some(Err(Error::value("work", "stopped by a fault", "finished")))
                 }
             },
             #[cfg(target_arch = "wasm32")]
@@ -178,7 +180,7 @@ impl<T> Work<T> {
     }
 }
 
-/// The outcome of work that has ended, which is forgotten.
+/// Takes the result of work that has ended, and removes the work.
 pub(super) fn outcome_of_ended<T: Send + 'static>(work: &mut Option<Work<T>>) -> Option<Result<T>> {
     let outcome = work.as_ref()?.outcome()?;
     *work = None;
@@ -191,14 +193,14 @@ impl<T> Drop for Work<T> {
     }
 }
 
-/// A bar that shows which part of something is done.
+/// A bar that shows the finished fraction of some work.
 pub(super) fn progress_bar(ui: &mut Ui, name: &str, part: f32) {
     let bar = ui.add(egui::ProgressBar::new(part).desired_height(14.0));
     bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name));
 }
 
 impl Reporter {
-    /// Says which part is done, and asks whether to go on.
+    /// Reports the finished fraction. Returns `Break` if the work was cancelled.
     pub(crate) fn tell(&self, part: f64) -> ControlFlow<()> {
         self.shared.done.store((part as f32).clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
         let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
@@ -214,7 +216,7 @@ impl Reporter {
     }
 }
 
-/// Why there is no run to work on.
+/// Error for a run that closed before it was written.
 pub(super) fn closed() -> Error {
     Error::value("run", "closed", "open until it is written")
 }

@@ -216,7 +216,7 @@ fn run(cli: Cli) -> Result<()> {
     }
 }
 
-/// What there is to choose from.
+/// The lists that `slump list` prints.
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Listed {
     Scenes,

@@ -88,9 +88,9 @@ pub(super) enum StudyCommand {
         #[arg(long)]
         quick: bool,
     },
-    /// Chart the error of every method against its time, for single steps and whole simulations
+    /// Chart the error of every solver against its time, for single steps and whole simulations
     Chart(ChartOptions),
-    /// Run every method on hard scenes, and report whether it holds, degrades or fails at each level
+    /// Run every solver on hard scenes, and report whether it holds, degrades or fails at each level
     Stability {
         /// Challenges [default: all]
         #[arg(value_name = "SCENE")]

@@ -258,7 +258,7 @@ pub(super) struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// Checkpoints of a run in `folder` that begins at this moment.
+    /// Plans the checkpoints in `folder` of a run that begins at this moment.
     pub(super) fn start(
         folder: &Path,
         every_secs: f64,

@@ -310,8 +310,8 @@ pub(super) fn interrupted(signal: Signal, last: &Observables) -> Error {
     Error::Interrupted { signal, exit_code, step: last.step, time_secs: last.time_secs }
 }
 
-/// Reports on stderr what went wrong and what is most likely to help. A state that is no longer finite ends the run
-/// with an error of its own.
+/// Reports alarms on stderr, each with the most likely remedy. A state that is no longer finite ends the run with an
+/// error of its own.
 pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
     for alarm in alarms.iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite) {
         note_line(format_args!("{}: {}", scene.name, alarm.message(&scene.settings())));

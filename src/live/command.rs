@@ -68,7 +68,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// True if the command makes a start that is being made pointless.
+    /// True if the command makes the load that is under way pointless.
     pub(super) fn interrupts(&self) -> bool {
         matches!(self, Self::CancelLoading | Self::Load(_) | Self::Quit)
     }

@@ -8,7 +8,7 @@ use crate::sim::Observables;
 
 /// Rows of a chunk, which is shared and never changes.
 const CHUNK: usize = 256;
-/// Where a curve becomes longer, rows are thinned by simulated time. 32,768 rows are 6 MB.
+/// Largest number of rows; longer curves are thinned by simulated time. 32,768 rows are 6 MB.
 const MOST_ROWS: usize = 32_768;
 
 /// Observables in the order of time: every step's, or in a long run rows with a least distance in simulated time. The
@@ -52,7 +52,7 @@ impl Curve {
     }
 
     pub(crate) fn push(&mut self, row: Observables) {
-        // The newest row, which is never in a shared chunk, gives way where it is too near the row before.
+        // The newest row, which is never in a shared chunk, is replaced if it is too close to the row before.
         let of_chunk = self.chunks.last().and_then(|chunk| chunk.last()).map(|row| row.time_secs);
         let of_tail = self.tail.iter().rev().nth(1).map(|row| row.time_secs);
         let least_secs = (1.0 - ROUNDING) * self.least_spacing_secs;
@@ -66,7 +66,7 @@ impl Curve {
         self.thin_to(MOST_ROWS);
     }
 
-    /// Drops rows near others until there are no more than that.
+    /// Drops rows that are close to others until at most this many remain.
     pub(crate) fn thin_to(&mut self, most_rows: usize) {
         while self.len() > most_rows.max(2) {
             let rows: Vec<_> = self.rows().copied().collect();

@@ -28,7 +28,7 @@ pub struct LiveFrame {
     pub name: String,
     /// Earlier runs, the newest last, then those that were undone, the next one first.
     pub past: Arc<[PastRun]>,
-    /// The worlds of the newest of them at the simulated time that is shown, or at its end; empty if nothing is stored.
+    /// The worlds of the newest earlier run at the visible simulated time, or at its end. Empty if nothing is stored.
     pub ghosts: Vec<Arc<Snapshot>>,
     /// True if time passes.
     pub playing: bool,
@@ -92,7 +92,7 @@ pub struct WorldFrame {
 pub struct WorldAlarm {
     /// Kind of the alarm.
     pub kind: AlarmKind,
-    /// Its message: what happened, since when, and what would have helped under the settings of that step.
+    /// Message: the event, the time of its first step, and advice for the settings of that step.
     pub text: Arc<str>,
     /// True if the settings have changed since then.
     pub is_earlier: bool,

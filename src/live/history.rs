@@ -23,7 +23,7 @@ const PART_OF_PAST: usize = 8;
 /// keyframes can be computed again.
 const KEYFRAME_BYTES: usize = 8 << 20;
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Largest number of rows of their curves; a row is about 500 bytes in a file.
+/// Largest number of rows per curve in a history that is handed out; a row is about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
 /// Time after which a tick pauses for commands. A world whose time step is far shorter than the leader's takes
@@ -449,7 +449,7 @@ impl RunHistory {
             let goes_on = goes_on.try_reduce(|| false, |one, other| Ok(one || other))?;
             let taken: u64 = planned.iter().map(|(world, _)| world.steps()).sum();
             let part = taken as f32 / all.max(1) as f32;
-            let text = format!("Computing what the link tells of: {taken} of {all} steps");
+            let text = format!("Computing the run of the link: {taken} of {all} steps");
             if !goes_on {
                 break;
             }

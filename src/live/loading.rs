@@ -17,11 +17,11 @@ pub struct LoadingProgress {
     pub part: f32,
     /// Description of the progress, one line.
     pub text: String,
-    /// The present state of what is being made, if it can be shown.
+    /// Present state of the preparation, if it can be shown.
     pub preview: Option<Preview>,
 }
 
-/// A moment of what is being made. It is only shown; the worlds do not change.
+/// A moment of a preparation. It is only shown; the worlds do not change.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preview {
     /// The moment.

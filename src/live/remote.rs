@@ -89,7 +89,7 @@ enum Waiting {
     All(StartTaker),
 }
 
-/// Sends bytes to the engine. The flag is true if the start that is being made is to be given up.
+/// Sends bytes to the engine. The flag is true if the load that is under way is to be cancelled.
 pub type Ask = Box<dyn FnMut(Vec<u8>, bool)>;
 
 /// The window's side of a remote run.

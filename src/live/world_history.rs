@@ -47,7 +47,7 @@ impl WorldHistory {
         budget_bytes: usize,
     ) -> Self {
         let mut simulation = start.clone();
-        // Settings are checked where they are made. If one is refused here, the start's setting stays.
+        // Settings are checked when they are made. If one is refused here, the start's setting stays.
         let _ = simulation.change(*settings);
         let mut curve = Curve::default();
         curve.push(*simulation.observables());
@@ -178,7 +178,7 @@ impl WorldHistory {
     /// Changes the world by hand. Later records are removed.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
-            return Err(Error::value("state", failure, "one that the run can go on from"));
+            return Err(Error::value("state", failure, "one from which the run can continue"));
         }
         self.simulation.edit(&edit)?;
         self.record.edited(&self.simulation, edit);

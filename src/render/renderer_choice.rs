@@ -21,7 +21,7 @@ pub enum RendererChoice {
     Vulkan,
     /// OpenGL, without a window through EGL.
     Gl,
-    /// The processor alone.
+    /// Only the processor.
     Cpu,
 }
 

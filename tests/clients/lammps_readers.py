@@ -1,4 +1,4 @@
-"""MDAnalysis and ASE: places, velocities and elements of the dumps, against the CSV."""
+"""MDAnalysis and ASE: positions, velocities and elements of the dumps, compared with the CSV."""
 
 import sys
 
@@ -37,7 +37,7 @@ def has_images(dump):
 
 
 def check_images(dump, every, wanted):
-    """Images of a cell whose borders wrap: with them a reader finds each grain's whole way."""
+    """Images in a periodic cell: with them a reader can unwrap the path of each grain."""
     universe = MDAnalysis.Universe(dump, format="LAMMPSDUMP", topology_format="LAMMPSDUMP", unwrap_images=True)
     ways = 0
     for moment, step in zip(universe.trajectory, wanted["step"]):

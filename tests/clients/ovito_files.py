@@ -1,4 +1,4 @@
-"""OVITO: particles, types, radii, frames and bonds of the dumps, against the CSV."""
+"""OVITO: particles, types, radii, frames and bonds of the dumps, compared with the CSV."""
 
 import sys
 
@@ -10,7 +10,7 @@ from ovito.modifiers import LoadTrajectoryModifier
 from recording import OF_FRAME, codes, flags, frames, kinds, table
 
 KINDS = ["grain", "fixed", "lost"]
-# Of the columns of grains, what OVITO calls them; all others but these have our names.
+# OVITO's names of columns of grains. All other columns have Slump's names.
 PROPERTIES = {"id": "Particle Identifier", "mass": "Mass", "coordination": "coordination_number"}
 MAPPED = {"kind", "x", "y", "vx", "vy", "omega", "radius"}
 KINDS_OF_J = ["grain", "fixed", "boundary"]
@@ -22,7 +22,7 @@ def main(recording):
     pipeline = import_file(f"{recording}/ovito/grains.dump")
     assert pipeline.source.num_frames == len(wanted)
     bonds = LoadTrajectoryModifier()
-    # As the head of the file has them: the first two say which particles a bond is between.
+    # In the order of the file's head: the first two columns name the particles of a bond.
     columns = ["Particle Identifiers.1", "Particle Identifiers.2", *of_bonds(every_contact)]
     bonds.source.load(f"{recording}/ovito/contacts.dump", columns=columns)
     assert bonds.source.num_frames == len(wanted)
@@ -54,7 +54,7 @@ def check_particles(particles, grains, all_flags):
     assert equal(particles.positions[:, :2], grains[["x", "y"]])
     assert equal(particles["Velocity"][:, :2], grains[["vx", "vy"]])
     assert equal(particles["Angular Velocity"][:, 2], grains["omega"])
-    # OVITO itself has radii in single precision.
+    # OVITO stores radii in single precision.
     assert equal(particles["Radius"][...], grains["radius"], relative=1.2e-7)
     for column in grains.columns.difference([*OF_FRAME, *MAPPED]):
         wanted = flags(grains[column]) if column in all_flags else grains[column]
@@ -74,7 +74,7 @@ def check_bonds(particles, contacts, all_flags):
 
 
 def equal(found, wanted, relative=5e-16):
-    """To the last bit but one, as far as OVITO reads decimal numbers."""
+    """Equal except for the last bit, because OVITO does not read decimal numbers more precisely."""
     found, wanted = numpy.asarray(found), numpy.asarray(wanted)
     return found.shape == wanted.shape and numpy.allclose(found, wanted, rtol=relative, atol=0, equal_nan=True)
 

@@ -1,4 +1,4 @@
-"""A recording as its CSV files have it: what all other formats are compared with."""
+"""A recording read from its CSV files. All other formats are compared with it."""
 
 import json
 
@@ -8,14 +8,14 @@ OF_FRAME = ["step", "time"]
 
 
 def kinds(recording, name):
-    """What each column of a table holds: number, count, flag or word."""
+    """Kind of each column of a table: number, count, flag or word."""
     with open(f"{recording}/data.json") as file:
         tables = json.load(file)["tables"]
     return {column["name"]: column["values"] for column in tables[name]}
 
 
 def table(recording, name):
-    """A table, every number as it was written, flags and words as words, and nothing where nothing is said."""
+    """A table: numbers as they were written, flags and words as words, None for missing values."""
     of_columns = kinds(recording, name)
     numbers = {column: [""] for column, kind in of_columns.items() if kind != "word"}
     words = {column: "str" for column, kind in of_columns.items() if kind in ("word", "flag")}
@@ -33,10 +33,10 @@ def frames(recording):
 
 
 def codes(words, column):
-    """Words as their places in a list."""
+    """Words as indices in a list."""
     return column.map({word: code for code, word in enumerate(words)}).to_numpy()
 
 
 def flags(column):
-    """True, false and neither as 1, 0 and -1."""
+    """True, false and missing as 1, 0 and -1."""
     return column.map({"true": 1, "false": 0}).fillna(-1).to_numpy()

@@ -1,4 +1,4 @@
-"""pandas and polars: schemas, rows and values of the Parquet files, against the CSV."""
+"""pandas and polars: schemas, rows and values of the Parquet files, compared with the CSV."""
 
 import sys
 
@@ -48,7 +48,7 @@ def compare(column, kind, text, by_polars, by_pandas):
 
 
 def described(recording, name, columns):
-    """Units and the run are in the metadata."""
+    """Check that the metadata has the units and the run."""
     schema = pyarrow.parquet.read_schema(f"{recording}/{name}/part-00000.parquet")
     said = {key.decode(): value.decode() for key, value in schema.metadata.items()}
     assert said["program"].startswith("slump "), said

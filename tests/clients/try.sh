@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# What users' programs see of a recording: pandas, polars, PyVista, MDAnalysis, ASE and OVITO from PyPI, and ParaView where it
-# is installed. Records a few small runs, reads them with each, and fails where one sees something else.
+# Reads recordings with the programs of users: pandas, polars, PyVista, MDAnalysis, ASE and OVITO from PyPI, and ParaView if
+# it is installed. Records a few small runs, reads them with each program, and fails if one reads other values.
 #
 #   tests/clients/try.sh [--fast] [FOLDER]
 #
-# --fast leaves OVITO and ParaView out, which are large. FOLDER keeps the recordings and the picture that
-# ParaView draws. The programs of Python go to target/clients, once. SLUMP names a program that is there, so
-# that none is built.
+# --fast leaves out OVITO and ParaView, which are large. FOLDER keeps the recordings and ParaView's picture. The Python
+# packages are installed once, to target/clients. SLUMP names an existing program; without it the program is built.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
@@ -40,7 +39,7 @@ record() {
     "$SLUMP" --headless --data "$out/$name" --overwrite --data-format parquet,csv,vtk,ovito,fields "$@" 2>"$out/$name.log" ||
         { cat "$out/$name.log" >&2; exit 1; }
 }
-# The paper's law on a base of fixed discs, bonds that tell their stretch, and walls of every shape.
+# The paper's law on a base of fixed discs, bonds with their stretch, and walls of every shape.
 record pile --bond 20 --dt 1e-3 --duration 0.3 --data-every 0.05
 record bonds --stepper range --bond 20 --dt 1e-3 --duration 0.02 --data-every 0.01
 record walls --scene assets/scenes/hourglass.toml --duration 0.1 --data-every 0.02
@@ -57,7 +56,7 @@ done
 "$python" "$here/lammps_readers.py" "$out/periodic"
 
 if [ -z "$fast" ] && command -v pvpython >/dev/null; then
-    # Debian's ParaView draws on a display alone.
+    # Debian's ParaView draws only on a display.
     xvfb-run -a pvpython "$here/draw_in_paraview.py" "$out/pile" 0.2 "$out/paraview.png"
     test -s "$out/paraview.png"
     echo "ParaView draws the pile"

@@ -1,4 +1,4 @@
-"""PyVista, and so VTK: points, lines, arrays, times and metadata of the VTK files, against the CSV."""
+"""PyVista, and therefore VTK: points, lines, arrays, times and metadata of the VTK files, compared with the CSV."""
 
 import sys
 
@@ -57,7 +57,7 @@ def fields(recording, wanted, of_grains, of_contacts):
         assert numpy.isclose(image.spacing, [*2 * [image.field_data["smoothing_width"][0] / 2], 1], rtol=0.1).all()
         masses = rows["mass"].to_numpy()
         assert numpy.isclose(area * image["density"].sum(), masses.sum(), rtol=1e-12)
-        # Where the image lies in space is where the grains are.
+        # The image must be at the place of the grains.
         centre = (image["density"][:, None] * image.cell_centers().points).sum(axis=0) / image["density"].sum()
         off = numpy.abs(centre[:2] - numpy.average(rows[["x", "y"]], axis=0, weights=masses))
         if (rows[["x", "y"]] == rows[["x_unwrapped", "y_unwrapped"]].to_numpy()).all(axis=None):
@@ -72,7 +72,7 @@ def read(reader, time):
 
 
 def same(found, wanted):
-    """Bit by bit, and nothing where nothing is."""
+    """Equal bit for bit, including missing values."""
     found, wanted = (numpy.ascontiguousarray(it, dtype=float) for it in (found, wanted))
     return found.shape == wanted.shape and (
         (found.view(numpy.int64) == wanted.view(numpy.int64)) | (numpy.isnan(found) & numpy.isnan(wanted))
@@ -106,7 +106,7 @@ def described(mesh):
 
 
 def ends(contacts, grains, rows):
-    """Lines go from grain i to disc j, or to a point of a boundary that the contact point is near."""
+    """Check that lines go from grain i to disc j, or to a point of a boundary near the contact point."""
     lines = contacts.lines.reshape(-1, 3)[:, 1:]
     assert (lines.ravel() == numpy.arange(2 * len(rows))).all()
     starts, stops = contacts.points[lines[:, 0]], contacts.points[lines[:, 1]]

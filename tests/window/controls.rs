@@ -236,7 +236,7 @@ fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
 fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
     let mut robot = Robot::open(pile());
     robot.click("Pile");
-    assert!(!robot.shows("rain takes some"));
+    assert!(!robot.shows("rain takes about"));
     let grains = |robot: &mut Robot, count: &str| {
         robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Grains").focus();
         robot.frames(3);
@@ -247,7 +247,7 @@ fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
         robot.frames(3);
     };
     grains(&mut robot, "2500");
-    assert!(robot.shows("2500 grains: rain takes some 3 min"));
+    assert!(robot.shows("2500 grains: rain takes about 3 min"));
     grains(&mut robot, "600");
     robot.clicks(&["Roll", "New pile"]);
     robot.until("the pile", |state| {

@@ -269,7 +269,7 @@ fn of_compared_worlds_the_selected_one_is_exported() {
     other.parameters.bond = 0.0;
     robot.send(Command::Compare(vec![other, same]));
     robot.take_steps(2);
-    let title = robot.harness.query_by_label_contains("Of world 1");
+    let title = robot.harness.query_by_label_contains("For world 1");
     assert!(title.is_some(), "the panel says which");
     export(&mut robot);
     assert_eq!(facts(folder.path())["parameters.bond"], "0.0");

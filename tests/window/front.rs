@@ -314,7 +314,7 @@ fn numbers_beyond_all_reason_are_refused() {
     assert!(robot.shows("ρ is 2, but must be between 0 and 1"));
 }
 
-/// Such numbers may come from a file, or from a window that was closed with them.
+/// A file, or a window that was closed with them, can contain such numbers.
 #[test]
 fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
     let places = |config: Config| {

@@ -142,7 +142,7 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
     robot.harness.step();
     robot.harness.step();
     let told = robot.state().notice().map(|it| it.0.text.clone()).unwrap_or_default();
-    assert!(told.starts_with("Walls go while time passes"), "{told}");
+    assert!(told.starts_with("Walls move only while time passes"), "{told}");
     robot.state_mut().run.live.send(Command::Play);
     robot.until("the wall to come", |state| {
         let boundaries = &state.run.world().unwrap().snapshot.surroundings.boundaries;

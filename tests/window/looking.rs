@@ -76,7 +76,7 @@ fn long_names_do_not_widen_the_panel() {
     robot.click("Compare");
     let before = robot.state().controls["Pile"].left();
     let line_ups =
-        ["Two laws", "Law, solver", "Expert", "Methods", "Friction", "Steppers", "Compare"];
+        ["Two laws", "Law, solver", "Expert", "Solvers", "Friction", "Steppers", "Compare"];
     for line_up in line_ups {
         robot.click(line_up);
         robot.frames(10);
@@ -159,7 +159,7 @@ fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
     let by_hand = by_hand.count();
     assert!(by_hand > 0 && robot.shows(&format!("{by_hand} of 138")));
     type_filter(&mut robot, "n = many");
-    assert!(robot.shows("“n = many” is no comparison of grain, x, y, speed, overlap, force, n"));
+    assert!(robot.shows("“n = many” is not a comparison of grain, x, y, speed, overlap, force, n"));
 
     robot.click("Contacts");
     let contacts = robot.world().snapshot.contacts.clone();
@@ -321,7 +321,7 @@ fn symbols_and_ordinals_are_written_as_one_reads_them() {
     });
     robot.send(Command::Pause);
     words_are_as_one_reads_them(&mut robot);
-    assert!(robot.shows("plotted: a step every "), "the situation");
+    assert!(robot.shows("plotted: one step every "), "the situation");
 }
 
 #[test]

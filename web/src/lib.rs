@@ -1,6 +1,6 @@
-//! Slump in a page. The page draws and asks; a worker of it, another instance of this module, computes.
+//! The browser version. The page draws and sends commands; its web worker, another instance of this module, computes.
 //!
-//! Both know each other by messages of bytes alone, which `static/index.html` and `static/worker.js` pass on.
+//! Both exchange only messages of bytes, which `static/page.js` and `static/worker.js` pass on.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -14,25 +14,25 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 extern "C" {
-    /// Brings a message from the page to its worker, which gives up the start that it is making where that is pointless.
+    /// Sends a message from the page to its worker. If `interrupts`, the worker cancels the load that is under way.
     fn slump_ask(message: Vec<u8>, interrupts: bool);
-    /// True where the worker is to give it up.
+    /// True if the worker must cancel that load.
     fn slump_gives_up() -> bool;
-    /// Brings a message from the worker to its page.
+    /// Sends a message from the worker to its page.
     fn slump_answer(message: Vec<u8>);
-    /// Has the browser save a file.
+    /// Makes the browser save a file.
     fn slump_save(name: &str, bytes: Vec<u8>);
-    /// Keeps what the page remembers.
+    /// Stores the page's preferences.
     fn slump_store(text: &str);
 }
 
-/// The worker's side.
+/// The engine in the worker.
 #[wasm_bindgen]
 pub struct Engine(RemoteEngine<Opening>);
 
 #[wasm_bindgen]
 impl Engine {
-    /// One with nothing loaded.
+    /// An engine with nothing loaded.
     #[wasm_bindgen(constructor)]
     #[allow(clippy::new_without_default, reason = "a page asks for it by `new`")]
     pub fn new() -> Self {
@@ -40,33 +40,33 @@ impl Engine {
         Self(browser::engine(Box::new(slump_answer), slump_gives_up))
     }
 
-    /// Takes in a message of the page.
+    /// Handles a message of the page.
     ///
     /// # Errors
-    /// Where it is none.
+    /// If the message is invalid.
     pub fn receive(&mut self, message: &[u8]) -> Result<(), JsError> {
         self.0.receive(message).map_err(|error| JsError::new(&error.to_string()))
     }
 
-    /// Does what is due. Returns for how many milliseconds nothing is, and −1 where only a message changes that.
+    /// Does what is due. Returns the time until something is due again, ms; −1 if only a message changes that.
     pub fn turn(&mut self) -> f64 {
         self.0.turn().map_or(-1.0, |wait| 1e3 * wait.as_secs_f64())
     }
 }
 
-/// The hash of the state that a link's run comes to, computed here and now, for programs without a page.
+/// Computes the run of a link and returns the hash of its last state, for programs without a page.
 ///
 /// # Errors
-/// Says what is wrong with the link.
+/// Names the fault of the link.
 #[wasm_bindgen]
 pub fn state_of(link: &str) -> Result<String, JsError> {
     browser::state_of(link).map_err(|error| JsError::new(&error.to_string()))
 }
 
-/// Files that were dropped, once they are read.
+/// Dropped files that have been read.
 type Dropped = Rc<RefCell<Vec<(PathBuf, Vec<u8>)>>>;
 
-/// The page's side.
+/// The window in the page.
 #[wasm_bindgen]
 pub struct Page {
     answers: Sender<Vec<u8>>,
@@ -76,14 +76,14 @@ pub struct Page {
 
 #[wasm_bindgen]
 impl Page {
-    /// Takes in a message of the worker.
+    /// Handles a message of the worker.
     pub fn receive(&self, message: Vec<u8>) {
-        // The laboratory lasts as long as the page.
+        // Sending fails only after the page is gone.
         let _ = self.answers.send(message);
         self.context.request_repaint();
     }
 
-    /// State of page and run as JSON, for tests.
+    /// State of the page and its run as JSON, for tests.
     pub fn told(&self) -> String {
         let (size, scale) = (self.context.content_rect().size(), self.context.pixels_per_point());
         let pixels = [size.x * scale, size.y * scale].map(|side| side as u32);
@@ -91,10 +91,10 @@ impl Page {
     }
 }
 
-/// Opens the laboratory on a canvas: as it was `stored`, at what the page's `address` names.
+/// Opens the window on a canvas, with its `stored` preferences and the run that the page's `address` names.
 ///
 /// # Errors
-/// Where the browser draws neither by WebGPU nor by WebGL 2.
+/// If the browser supports neither WebGPU nor WebGL 2.
 #[wasm_bindgen]
 pub async fn open(
     canvas: web_sys::HtmlCanvasElement,
@@ -132,7 +132,7 @@ struct Laboratory {
 }
 
 impl Laboratory {
-    /// Has files read that are dropped in this frame, and opens those that have been.
+    /// Begins to read the files that were dropped in this frame, and opens the files that have been read.
     fn take_dropped_files(&mut self, context: &Context) {
         for file in context.input(|input| input.raw.dropped_files.clone()) {
             let (dropped, context) = (Rc::clone(&self.dropped), context.clone());

@@ -1,4 +1,4 @@
-// The page: it draws and asks. What it asks is computed by its worker.
+// The page. It draws and sends commands; its worker computes.
 import init, { open } from "./slump_web.js";
 
 const notice = document.getElementById("notice");
@@ -26,8 +26,8 @@ globalThis.slump_save = (name, bytes) => {
 
 try {
     const worker = new Worker("worker.js", { type: "module" });
-    // While it makes a start the worker takes in no message. It looks whether this address is still there: it goes where
-    // the start is to be given up, and each message that asks for that brings the next one.
+    // While the worker loads something it receives no messages. Instead it checks if this address still exists: the page
+    // revokes the address to cancel the load, and sends the next address with the same message.
     let address = null;
     globalThis.slump_ask = (message, interrupts) => {
         if (interrupts) {

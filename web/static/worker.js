@@ -1,4 +1,4 @@
-// The worker: it computes. Between two turns it takes in what the page has sent.
+// The worker. It computes, and receives the messages of the page between two turns.
 import init, { Engine } from "./slump_web.js";
 
 const early = [];
@@ -11,7 +11,7 @@ let looked_at = 0;
 globalThis.slump_answer = (message) => postMessage(message, [message.buffer]);
 for (const name of ["slump_ask", "slump_save", "slump_store"]) globalThis[name] = () => {};
 
-// True once the page has taken the address away that came with the last message. To look takes a millisecond.
+// True once the page has revoked the address that came with the last message. A check takes a millisecond.
 globalThis.slump_gives_up = () => {
     if (!address || performance.now() - looked_at < 100) return false;
     looked_at = performance.now();
@@ -25,7 +25,7 @@ globalThis.slump_gives_up = () => {
     }
 };
 
-// A message to itself comes at once and after those that wait; a timer would take 4 ms.
+// A message to itself arrives at once, after the waiting messages; a timer would take 4 ms.
 const self_channel = new MessageChannel();
 self_channel.port1.onmessage = () => {
     is_due = false;

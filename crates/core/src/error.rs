@@ -12,7 +12,7 @@ pub enum Error {
         field: String,
         /// The value found.
         value: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: String,
     },
     /// A file that could not be read or written.
@@ -36,7 +36,7 @@ pub enum Error {
         signal: &'static str,
         /// The program's exit code.
         exit_code: u8,
-        /// The last step.
+        /// Number of the last step.
         step: u64,
         /// The simulated time of that step.
         time_secs: f64,

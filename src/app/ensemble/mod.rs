@@ -1,9 +1,10 @@
-//! The ensemble: what the settings of a world make of piles that differ from its own in their seed alone ("other piles" in
-//! the window), so that a number of one pile stands beside its mean over several.
+//! The ensemble: runs of other initial states with the settings of a world. They differ from the world's pile only in
+//! their seed ("other piles" in the window). They give the number of one pile a mean and an interval.
 //!
-//! Piles are chaotic, and the shipped one was chosen for showing the pattern: its seed is never among the others.
-//! They run on cores that are idle, from the start to the scene's end, with one set of settings. A run whose
-//! settings changed on the way, or which a hand pulled in, is none that they could be compared with.
+//! Piles are chaotic. The shipped pile was chosen because it shows the paper's pattern, so its seed is never in the
+//! ensemble. Other piles run on idle cores, from their initial state to the scene's end, with one set of settings. A
+//! run whose settings changed on the way, or that was pulled by hand, has no ensemble, because it cannot be compared
+//! with these runs.
 
 mod pool;
 mod runs;
@@ -23,28 +24,30 @@ use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
 use runs::others_of;
 
-/// The rule that a mean goes by, for whoever points at it.
-const RULE: &str = "Idle cores run piles that differ from this one in their seed alone, with the present settings from \
-                    the start on: thin lines, and their mean dashed. ± is the 95 % interval of that mean (Student's), not \
-                    how far piles differ. Other settings begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
-                    reset it. The seed of the shipped pile, which was chosen, is never among them.";
+/// Rule for the mean, as a hover text.
+const RULE: &str = "Idle cores run other piles with the present settings from their initial state on. They differ \
+                    from this pile only in their seed. Thin lines show these piles, the dashed line shows their \
+                    mean. ± is the 95 % interval of that mean (Student's), not the spread of the piles. They start \
+                    again when the settings change. A run whose settings changed on the way, or that was pulled by \
+                    hand, has no other piles: reset it. The seed of the shipped pile, which was chosen, is never \
+                    among them.";
 
-/// The other piles of what is open.
+/// The other piles of the open scene.
 #[derive(Default)]
 pub struct Ensemble {
-    /// Where their initial states are kept; none where there is no such place.
+    /// Folder in which initial states are stored. `None` if the system has no such folder.
     folder: Option<PathBuf>,
-    /// What is open, and which its other piles are.
+    /// The open scene and its other piles.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
     worlds: Vec<Option<Settings>>,
-    /// All that were released of one kind of pile, and that kind.
+    /// All released piles of one kind, and that kind.
     released: Vec<Released>,
     kind: Option<PileKind>,
 }
 
-/// Piles whose runs can be compared: those with the same kind have the same other piles.
+/// Kind of a pile. Piles of the same kind have the same other piles.
 #[derive(PartialEq)]
 struct PileKind {
     scene: String,
@@ -54,40 +57,40 @@ struct PileKind {
 }
 
 impl Ensemble {
-    /// None yet; their initial states are kept in the user's cache folder.
+    /// An empty ensemble. Initial states are stored in the user's cache folder.
     pub(crate) fn new() -> Self {
         let folder = user_folder("XDG_CACHE_HOME", ".cache").map(|folder| folder.join("piles"));
         Self { folder, ..Self::default() }
     }
 
-    /// Keeps initial states elsewhere.
+    /// Stores initial states in another folder.
     pub fn keep_in(&mut self, folder: PathBuf) {
         self.stop();
         self.folder = Some(folder);
     }
 
-    /// Where initial states are kept.
+    /// Folder of initial states.
     pub(super) fn folder(&self) -> Option<PathBuf> {
         self.folder.clone()
     }
 
-    /// Ends all threads and forgets what they came to.
+    /// Ends all threads and discards their results.
     pub fn stop(&mut self) {
         self.pool = None;
         self.worlds.clear();
     }
 
-    /// True if what is open has others, and there are cores to compute them.
+    /// True if the open scene has other piles and there are cores to compute them.
     pub(super) fn is_possible(&self) -> bool {
         self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
     }
 
-    /// Number of threads that compute them.
+    /// Number of threads that compute other piles.
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or(0, WorkerPool::threads)
     }
 
-    /// Follows the worlds that there are; stops if other piles are not wanted.
+    /// Follows the worlds of the newest frame. Stops if other piles are not wanted.
     pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&self.opened) != address(&frame.start) {
@@ -123,7 +126,7 @@ impl Ensemble {
         }
     }
 
-    /// Forgets the released piles of another kind.
+    /// Discards the released piles of another kind.
     fn note_kind(&mut self) {
         let Some(opened) = self.opened.as_ref().filter(|_| !self.piles.is_empty()) else { return };
         let kind = Some(PileKind {
@@ -138,7 +141,7 @@ impl Ensemble {
         }
     }
 
-    /// Notes the settings of worlds that were released. Returns true if some of them are new.
+    /// Stores the settings of worlds that were released. Returns true if some of them are new.
     fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
         let before = self.released.len();
         for (world, settings) in frame.worlds.iter().zip(all) {
@@ -153,13 +156,13 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Forgets all piles that were released, except those that are shown.
+    /// Discards all released piles except the visible ones.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }
 
-    /// Settings of piles that were released, and the runs of their other piles. A pile that is shown is among them once
-    /// it has reached its end.
+    /// Settings of released piles, and the runs of their other piles. A visible pile is included once it has reached
+    /// its end.
     pub(crate) fn released(&self, frame: &LiveFrame) -> impl Iterator<Item = &Released> {
         let end_secs = self.kind.as_ref().map_or(f64::INFINITY, |kind| kind.duration_secs);
         let is_on_its_way = move |settings: &Settings| {
@@ -172,14 +175,14 @@ impl Ensemble {
         self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
     }
 
-    /// The runs of the other piles with the settings of a pile that was released.
+    /// Runs of the other piles with the settings of a released pile.
     pub(crate) fn band(&self, settings: &Settings) -> Option<&Arc<Band>> {
         let mut released = self.released.iter().filter(|_| !self.piles.is_empty());
         released.find(|(own, _)| own == settings).map(|(_, band)| band)
     }
 
-    /// The effect of a change of settings on the slump of the other piles at a simulated time, in a sentence; nothing
-    /// if fewer than two piles ran under both settings.
+    /// A sentence on the effect of a change of settings on the slump of other piles at a simulated time. `None` if
+    /// fewer than two piles ran under both settings.
     pub(crate) fn effect(
         &self,
         before: &Settings,
@@ -190,7 +193,7 @@ impl Ensemble {
         Some(format!("{}: {}", change_text(before, after), effect(&paired, self.piles.len())?))
     }
 
-    /// How the other piles of a world come about, and which they are.
+    /// Text on the other piles of a world: their rule and seeds.
     pub(crate) fn about(&self, world: usize) -> String {
         let Some(summary) = self.summary(world) else { return RULE.into() };
         let EnsembleSummary { seeds, settling, failed, .. } = summary;
@@ -200,37 +203,38 @@ impl Ensemble {
             text += &format!(" Rain {number} of {}: {:.0} %.", seeds.len(), 100.0 * part);
         }
         if failed > 0 {
-            text += &format!(" {failed} of the runs came to no end and are left out.");
+            text += &format!(" {failed} of the runs failed and are left out.");
         }
         text
     }
 
-    /// The result of a world's other piles at the moment that is shown, in words; nothing if the world has none.
+    /// Result of a world's other piles at the visible moment, as text. `None` if the world has none.
     pub(crate) fn said(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         let row = frame.worlds.get(world)?.snapshot.observables;
         Some(said(&self.summary(world)?, row.time_secs))
     }
 
-    /// The words of `said` in short, for narrow places.
+    /// Result of the other piles in short, for narrow places.
     pub(crate) fn said_in_short(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         Some(self.said(frame, world)?.replace("other piles", "others"))
     }
 
-    /// Mean slump of those that have come to their end at a simulated time (s), half the width of its interval, and
-    /// their number.
+    /// Mean slump of the other piles that have reached a simulated time (s), half the width of its interval, and their
+    /// number.
     pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
         let band = self.summary(world)?.band;
         let (mean, half) = band.at(time_secs)?;
         Some((mean, half, band.count))
     }
 
-    /// What is said of those of a world; nothing where it has none.
+    /// State of the other piles of a world. `None` if it has none.
     pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         self.pool.as_ref()?.summary(world)
     }
 }
 
-/// Mean slump before and after a change and mean difference in words, for so many piles in all.
+/// Text with the mean slump before and after a change and the mean difference. `planned` is the number of piles in
+/// all.
 fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<String> {
     const WORDS: [&str; 9] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"];
     let count = difference.count;
@@ -250,23 +254,23 @@ fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<Str
     Some(format!("slump {before} → {after}, {piles} each; difference {difference} (paired)"))
 }
 
-/// What other piles say at a simulated time.
+/// Text on the other piles at a simulated time.
 fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let (planned, count) = (summary.seeds.len() - summary.failed, summary.band.count);
     let mean = summary.band.at(time_secs);
     let of = if count < planned { format!("{count} of {planned}") } else { count.to_string() };
     match (mean, summary.settling) {
         (Some((mean, half)), _) if half.is_finite() => {
-            // They show half an interval to two digits, or to one where that is below 0.001.
+            // The digits show half the width of the interval with two digits, or with one below 0.01.
             let decimals = if half >= 0.1 { 2 } else { 3 };
             format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
         }
         (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
-        (None, _) if count > 0 => "other piles were not run so far".into(),
+        (None, _) if count > 0 => "other piles end earlier".into(),
         (None, Some((number, _))) => {
             format!("other piles: rain {number} of {}", summary.seeds.len())
         }
-        (None, None) => "other piles are under way".into(),
+        (None, None) => "other piles are being computed".into(),
     }
 }
 
@@ -316,7 +320,7 @@ mod tests {
         assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
         assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
         assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: rain 2 of 3");
-        assert_eq!(said(&told(&[], None), 0.0), "other piles are under way");
-        assert_eq!(said(&told(&[0.25], None), 9.0), "other piles were not run so far");
+        assert_eq!(said(&told(&[], None), 0.0), "other piles are being computed");
+        assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");
     }
 }

@@ -1,4 +1,4 @@
-//! The pool of worker threads that runs the ensemble: what is to be done, what is under way, and what has come of it.
+//! Worker threads that run the ensemble, with the jobs to be done, under way and finished.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -15,25 +15,25 @@ use crate::sim::Settings;
 use crate::study::settled_pile;
 use crate::world::Grain;
 
-/// Least time between two looks of the window at how far a pile has come.
+/// Least time between two progress updates of a pile.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
-/// Cores that are left to what is in front; where the system is not asked for a lower priority, another one for the
-/// window.
+/// Cores that are left to the visible run. If the system cannot lower the priority of a thread, one more is left to
+/// the window.
 const LEFT: usize = if cfg!(any(target_os = "linux", windows)) { 1 } else { 2 };
 
-/// How many cores are idle while a world runs: none where there is one.
+/// Number of idle cores while a world runs. On a machine with one core it is 0.
 pub(super) fn idle_cores() -> usize {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     cores.saturating_sub(LEFT)
 }
 
-/// Gives the thread that calls it the lowest priority. On Linux a priority is a thread's own, and that of the
-/// "process" None is that of the calling thread (setpriority(2), "C library/kernel differences").
+/// Gives the calling thread the lowest priority. On Linux each thread has its own priority, and process "None" stands
+/// for the calling thread (setpriority(2), "C library/kernel differences").
 fn give_way() {
     #[cfg(target_os = "linux")]
     {
         const NICEST: i32 = 19;
-        // Where it is refused, the thread shares its core as any other would.
+        // If the system refuses, the thread shares its core as any other would.
         let _ = rustix::process::setpriority_process(None, NICEST);
     }
     #[cfg(windows)]
@@ -41,12 +41,12 @@ fn give_way() {
         use windows_sys::Win32::System::Threading::{
             GetCurrentThread, SetThreadPriority, THREAD_PRIORITY_IDLE,
         };
-        // SAFETY: the handle stands for the calling thread, and needs no closing.
+        // SAFETY: the handle stands for the calling thread and needs no closing.
         unsafe { SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_IDLE) };
     }
 }
 
-/// Does work on as many threads as there are idle cores, one at least, below all others.
+/// Does work on as many threads as there are idle cores, at least one, with the lowest priority.
 pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     let builder = rayon::ThreadPoolBuilder::new().num_threads(idle_cores().max(1));
     let pool = builder.start_handler(|_| give_way()).build();
@@ -54,47 +54,47 @@ pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + 
     pool.map_err(refuse)?.install(work)
 }
 
-/// What a thread does with a pile, by the pile's place among the others.
+/// A job on one pile, given by the pile's index in the ensemble.
 #[derive(Clone, Copy, PartialEq)]
 enum PileJob {
-    /// Let it settle.
+    /// Deposit it.
     Settle(usize),
-    /// Run it with the settings of a world.
+    /// Run it with these settings.
     Run(usize, Settings),
 }
 
-/// How far a job has come.
+/// Progress or result of a job.
 enum JobState {
-    /// A part, 0 … 1.
+    /// Finished fraction, 0 … 1.
     Underway(f32),
     Settled(Vec<Grain>),
     Ran(SlumpSeries),
     Failed,
 }
 
-/// What is said of the other piles of a world.
+/// State of the other piles of a world.
 #[derive(Clone, Debug)]
 pub(crate) struct EnsembleSummary {
-    /// Of those that have come to their end.
+    /// Results of the piles that have finished.
     pub band: Arc<Band>,
     pub seeds: Vec<u64>,
     pub failed: usize,
-    /// The pile that settles at present, from 1, and how far it has come, 0 … 1.
+    /// The pile that is being deposited, counted from 1, and its finished fraction, 0 … 1.
     pub settling: Option<(usize, f32)>,
 }
 
-/// Settings of a pile that was released, and the runs of its other piles.
+/// Settings of a released pile, and the runs of its other piles.
 pub(crate) type Released = (Settings, Arc<Band>);
 
-/// What is to be done, and what was begun.
+/// The jobs to be done and those that have begun.
 #[derive(Default)]
 struct Jobs {
-    /// None where a world has no others.
+    /// `None` for a world without other piles.
     worlds: Vec<Option<Settings>>,
-    /// Settings of all piles that were released. Their runs wait for those of the worlds.
+    /// Settings of all released piles. Their jobs have lower priority than those of the worlds.
     released: Vec<Settings>,
     begun: Vec<(PileJob, JobState)>,
-    /// Of runs that have come to their end, by their settings.
+    /// Results of finished runs, by their settings.
     bands: Vec<Released>,
     is_over: bool,
 }
@@ -108,8 +108,8 @@ impl Jobs {
         !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
     }
 
-    /// Begins the next job: first those of the worlds, then those of earlier settings, the newest first. With it come
-    /// the grains that are to run.
+    /// Begins the next job and returns it with its grains. The jobs of the worlds come first, then those of earlier
+    /// settings, the newest first.
     fn next(&mut self, piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         let worlds = self.worlds.iter().copied().flatten().collect();
         let earlier = self.released.iter().rev().map(|&settings| vec![settings]);
@@ -119,7 +119,8 @@ impl Jobs {
         Some(next)
     }
 
-    /// The next job of some settings: pile by pile, each for all of these settings, so that all have as many.
+    /// The next job for these settings. One pile is finished for all settings before the next, so that all settings
+    /// have as many piles.
     fn next_of(&self, settings: &[Settings], piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         if settings.is_empty() {
             return None;
@@ -134,7 +135,7 @@ impl Jobs {
         })
     }
 
-    /// Notes how far a job has come, where it is still wanted.
+    /// Stores the state of a job that is still wanted.
     fn note(&mut self, job: PileJob, state: JobState) {
         if !self.is_under_way(job) {
             return;
@@ -159,7 +160,7 @@ impl Jobs {
     }
 }
 
-/// What the threads and the window share.
+/// State that the threads and the window share.
 struct PoolState {
     opened: Arc<LiveStart>,
     piles: Vec<NewPile>,
@@ -169,16 +170,16 @@ struct PoolState {
     news: Condvar,
 }
 
-/// Threads at work. Dropped, they end after the step that they are computing.
+/// The worker threads. When the pool is dropped, they end after their present step.
 pub(super) struct WorkerPool {
     state: Arc<PoolState>,
-    // Their threads end when the work that they were given does.
+    // Each thread ends when its work ends.
     threads: Vec<rayon::ThreadPool>,
 }
 
 impl WorkerPool {
-    /// Starts a thread for each idle core. Initial states are kept in `folder`; `context` is asked for a frame where
-    /// there is something new. The runs of `released` are not computed again.
+    /// Starts a thread per idle core. Initial states are stored in `folder`. The threads ask `context` for a new frame
+    /// when they have results. Settings in `released` that have results are not computed again.
     pub(super) fn start(
         folder: &Path,
         context: &egui::Context,
@@ -201,7 +202,7 @@ impl WorkerPool {
             jobs: Mutex::new(jobs),
             news: Condvar::new(),
         });
-        // A pool of one thread each: what a method does in parallel stays on it, below all others.
+        // Each pool has one thread, so that the parallel parts of a solver stay on that thread, with its low priority.
         let thread = |_| {
             let builder = rayon::ThreadPoolBuilder::new().num_threads(1);
             let builder = builder.thread_name(|_| "other piles".into()).panic_handler(|_| {});
@@ -214,8 +215,8 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Computes for worlds with these settings, then for released piles with these settings. Forgets the runs of all
-    /// other settings.
+    /// Computes for worlds with these settings, then for released piles with these settings. Discards the results of
+    /// all other settings.
     pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
         let mut jobs = self.state.lock();
         let is_wanted =
@@ -229,7 +230,7 @@ impl WorkerPool {
         self.state.news.notify_all();
     }
 
-    /// Notes the runs that have come to their end.
+    /// Copies the finished runs to `released`.
     pub(super) fn note_runs(&self, released: &mut [Released]) {
         let jobs = self.state.lock();
         for (settings, band) in released {
@@ -239,7 +240,7 @@ impl WorkerPool {
         }
     }
 
-    /// What is said of the others of a world; nothing where it has none.
+    /// State of the other piles of a world. `None` if it has none.
     pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         let (jobs, piles) = (self.state.lock(), &self.state.piles);
         let settings = (*jobs.worlds.get(world)?)?;
@@ -278,7 +279,7 @@ impl PoolState {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What a thread does until all is over.
+    /// Main loop of a thread.
     fn work(&self) {
         while let Some((job, grains)) = self.next() {
             let came_to = match job {
@@ -293,14 +294,14 @@ impl PoolState {
                     ran.map_or(Some(JobState::Failed), |series| series.map(JobState::Ran))
                 }
             };
-            // A run that was given up may have been begun by another thread since.
+            // If a run was given up, another thread may have begun it again since.
             came_to.into_iter().for_each(|state| self.lock().note(job, state));
             self.news.notify_all();
             self.context.request_repaint();
         }
     }
 
-    /// The next job, once there is one; nothing where all is over.
+    /// Waits for the next job. `None` if the pool is closing.
     fn next(&self) -> Option<(PileJob, Vec<Grain>)> {
         let mut jobs = self.lock();
         while !jobs.is_over {

@@ -1,4 +1,4 @@
-//! Which piles are the others of one that is open, how one of them runs, and the mean of those that have run.
+//! The other piles of a scene, the run of one of them, and the mean of finished runs.
 
 use std::ops::ControlFlow;
 
@@ -10,7 +10,7 @@ use crate::sim::{RunEnding, Settings, Simulation};
 use crate::study::{self, Mean};
 use crate::world::Grain;
 
-/// A run's slump: simulated time, s, and Δy.
+/// The slump of a run against time: pairs of simulated time, s, and Δy.
 pub(crate) type SlumpSeries = Vec<[f64; 2]>;
 
 /// Mean slump of some runs and its 95 % interval by Student's distribution, at the times that all of them have.
@@ -21,12 +21,12 @@ pub(crate) struct Band {
     /// Upper ends of the intervals; ∞ for one run.
     pub highs: Vec<f64>,
     pub count: usize,
-    /// The runs themselves, each with the place of its pile among the others.
+    /// The runs, each with the index of its pile in the ensemble.
     pub runs: Vec<(usize, SlumpSeries)>,
 }
 
 impl Band {
-    /// Of runs with the same settings, which have the same times.
+    /// Computes the band of runs with the same settings and therefore the same times.
     pub(super) fn of(runs: &[(usize, &SlumpSeries)]) -> Self {
         let all = runs.iter().map(|&(pile, run)| (pile, run.clone())).collect();
         let mut band = Self { count: runs.len(), runs: all, ..Self::default() };
@@ -41,8 +41,8 @@ impl Band {
         band
     }
 
-    /// Mean and half the width of the interval at the last time up to `time_secs`; nothing before the first and
-    /// after the last.
+    /// Mean and half the width of the interval at the last time up to `time_secs`. `None` before the first and after
+    /// the last time.
     pub(crate) fn at(&self, time_secs: f64) -> Option<(f64, f64)> {
         let index = self.index_at(time_secs)?;
         Some((self.means[index], self.highs[index] - self.means[index]))
@@ -54,8 +54,8 @@ impl Band {
         index.checked_sub(1).filter(|_| time_secs < last + spacing)
     }
 
-    /// Slumps at a simulated time of the piles that ran under both settings: mean here, mean of `other`, and mean of
-    /// the differences, other − here.
+    /// Mean slumps at a simulated time of the piles that ran under both settings: of this band, of `other`, and of the
+    /// differences, other − this.
     pub(super) fn paired(&self, other: &Self, time_secs: f64) -> Option<[Mean; 3]> {
         let (index, other_index) = (self.index_at(time_secs)?, other.index_at(time_secs)?);
         let pair = |(pile, run): &(usize, SlumpSeries)| {
@@ -69,9 +69,10 @@ impl Band {
     }
 }
 
-/// Points of a run at the most, but for its end.
+/// Largest number of points of a run, without its last point.
 const MOST_POINTS: u64 = 400;
-/// The slump of a scene from its start to its end; nothing where `goes_on`, which is asked after each step, says no.
+/// Computes the slump of a scene from its initial state to its end. `goes_on` is called after each step; if it returns
+/// false, the result is `None`.
 pub(super) fn slump(
     scene: &Scene,
     mut goes_on: impl FnMut() -> bool,
@@ -95,13 +96,13 @@ pub(super) fn slump(
     }
 }
 
-/// Number of other piles.
+/// Number of other piles per world.
 const COUNT: usize = 8;
-/// Larger piles rain for minutes each.
+/// Largest pile with an ensemble. Larger piles take minutes each to deposit.
 const MOST_GRAINS: usize = 1_000;
 
-/// The other piles of what is open, with seeds from 1 on but for its own and that of the shipped state; none where
-/// it is no pile that was made from a seed, or a large one.
+/// The other piles of the open scene: seeds from 1, without the scene's own seed and that of the shipped pile. Empty
+/// if the scene is not a pile made from a seed, or is too large.
 pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
     let Some(own) = pile_of(opened).filter(|pile| pile.grains <= MOST_GRAINS) else {
         return Vec::new();
@@ -111,13 +112,13 @@ pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
     seeds.take(COUNT).map(|seed| NewPile { seed, ..own.clone() }).collect()
 }
 
-/// What the grains of a scene were made of.
+/// The pile from which the grains of a scene were made.
 fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     let LiveStart { config, scene, .. } = opened;
     if config.source.initial.is_some() {
         return None;
     }
-    // A saved run goes by the name of its scene alone.
+    // A saved run names only its scene.
     let is_shipped = || {
         let shipped = built_in(Config::DEFAULT_SCENE).ok()?;
         let places = |scene: &Scene| -> Vec<_> {
@@ -128,7 +129,7 @@ fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     config.new_pile().ok()?.or_else(is_shipped)
 }
 
-/// The scene that is open, with other grains and these settings.
+/// The open scene with other grains and these settings.
 pub(super) fn scene_of(
     opened: &LiveStart,
     pile: &NewPile,

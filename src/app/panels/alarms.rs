@@ -1,12 +1,12 @@
-//! Alarms in words.
+//! The texts of alarms.
 
 use crate::app::budget::FAST;
 use crate::app::watched_run::WatchedRun;
 use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::{AlarmKind, Settings};
 
-/// The alarms of the selected world, then those of others with their titles; in each, those of the present settings
-/// before earlier ones, the newest first.
+/// Alarms of the selected world, then those of the other worlds with their titles. Within a world, alarms of the
+/// present settings come first, then earlier ones, the newest first.
 pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     let of_world = |index: usize| {
         let world = &run.frame.worlds[index];
@@ -24,8 +24,8 @@ pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
-/// True for an alarm about something that was chosen: unsolved steps under Fast without cohesion. With cohesion, unsolved
-/// steps break bonds.
+/// True for an alarm that follows from a choice of the user: unsolved steps under Fast without cohesion. With cohesion,
+/// unsolved steps break bonds.
 fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let Settings { parameters, solver, .. } = world.controls.settings;
     alarm.kind == AlarmKind::SweepLimit

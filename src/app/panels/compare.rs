@@ -14,12 +14,12 @@ use crate::world::{FrictionCone, Parameters};
 
 /// The paper's time steps, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
-/// Most worlds side by side.
+/// Largest number of worlds side by side.
 const MOST_WORLDS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let text = "Worlds from one initial state, kept at the same simulated time.";
-    let hint = "A preset keeps the stepper and the numbers that all worlds share. It solves steps as the scene does.";
+    let hint = "A preset keeps the stepper and the parameters that all worlds share. It uses the scene's solver.";
     ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
     presets(ui, run);
     let before: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
@@ -31,10 +31,10 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let rows: Vec<_> = rows.collect();
     ui.horizontal(|ui| {
         let add = ui.add_enabled(all.len() < MOST_WORLDS, Button::new("Add"));
-        if add.on_hover_text("One more like the selected one.").clicked() {
+        if add.on_hover_text("Add a world with the settings of the selected one.").clicked() {
             all.push(all[run.selected]);
         }
-        let hint = "Go on with the selected world alone, from the start.";
+        let hint = "Keep only the selected world and start it again.";
         if compares && ui.button("One world").on_hover_text(hint).clicked() {
             all = vec![all[run.selected]];
         }
@@ -48,11 +48,11 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// Worlds that one click sets side by side.
+/// A preset: worlds that one click sets side by side.
 struct LineUp {
     name: &'static str,
     hint: &'static str,
-    /// Made of [`base`].
+    /// Makes the worlds from the settings of [`base`].
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
@@ -91,8 +91,8 @@ const LINE_UPS: [LineUp; 4] = [
 /// Line-ups of methods, for those who study solvers.
 const METHOD_LINE_UPS: [LineUp; 3] = [
     LineUp {
-        name: "Methods",
-        hint: "As many methods as there is room for, on the same problem.",
+        name: "Solvers",
+        hint: "As many solvers as there is room for, on the same problem.",
         worlds: |base| {
             let by = |info: &MethodInfo| Settings { solver: base.solver.by(info.method), ..base };
             METHODS.iter().take(MOST_WORLDS).map(by).collect()
@@ -100,7 +100,7 @@ const METHOD_LINE_UPS: [LineUp; 3] = [
     },
     LineUp {
         name: "Friction",
-        hint: "Every model of friction, and tresca solved four times a step, by nsgs.",
+        hint: "All friction models, solved by nsgs, and tresca with four solves per step.",
         worlds: |base| {
             let base = stepped(base, Stepper::Moreau);
             let by = |friction_model, model_solves| {
@@ -114,7 +114,7 @@ const METHOD_LINE_UPS: [LineUp; 3] = [
     },
     LineUp {
         name: "Steppers",
-        hint: "As many ways to step as there is room for, from the same state.",
+        hint: "As many steppers as there is room for, from the same initial state.",
         worlds: |base| {
             let by = |&stepper: &Stepper| stepped(base, stepper);
             Stepper::ALL.iter().take(MOST_WORLDS).map(by).collect()
@@ -122,15 +122,15 @@ const METHOD_LINE_UPS: [LineUp; 3] = [
     },
 ];
 
-/// With another stepper, and with nothing that it does not take.
+/// Switches to another stepper, and switches off remedies and settings that it does not take.
 fn stepped(base: Settings, stepper: Stepper) -> Settings {
     let mut settings = Settings { stepper, ..base };
     settings.parameters.cone = FrictionCone::Shifted;
     settings.with_only_what_is_taken()
 }
 
-/// The settings that presets vary: those of the scene, with the stepper and the parameters that all worlds share. The
-/// solver, remedies and touch tolerance of a comparison before would act without a word.
+/// Base settings of the presets: those of the scene, with the stepper and the parameters that all worlds share. The
+/// solver, remedies and touch tolerance of the previous comparison do not count, because the user would not see them.
 fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
     let mut base = *scene;
     let physics = Parameters::ABOUT.iter().filter(|about| about.name != "touch-tolerance");
@@ -169,11 +169,11 @@ fn line_ups(ui: &mut Ui, run: &mut WatchedRun, all: &[LineUp]) {
     });
 }
 
-/// One world's row. True if it is to be removed.
+/// Shows the row of one world. Returns true if the user removes it.
 fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {
-        // Names are words on the panel's ground; the colour alone would not always be readable.
+        // A world's name is in the text colour, because its own colour would not always be readable.
         let colour = theme::world_colour(index, ui.visuals().dark_mode);
         ui.label(RichText::new("■").color(colour));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -182,7 +182,9 @@ fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.with_layout(left, |ui| {
                 let chosen = Button::selectable(run.selected == index, name.as_str());
-                let hint = format!("{name}\nSliders, Law and solver are about this world.");
+                let hint = format!(
+                    "{name}\nClick it: the sliders and Law, solver then change this world."
+                );
                 if ui.add(chosen.truncate()).on_hover_text(hint).clicked() {
                     run.selected = index;
                 }

@@ -1,4 +1,4 @@
-//! Panel: runs that are saved and opened, and the recording as files for other programs.
+//! Panel: saving and opening runs, and exporting a recording for other programs.
 
 use egui::{Button, RichText, TextEdit, Ui};
 
@@ -16,7 +16,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let is_ready = context.run.is_ready();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, context));
     if IN_BROWSER {
-        let text = "Files are downloads. A saved run, a session or a scene opens where it is dropped on the page.";
+        let text =
+            "Files are downloads. To open a scene, a saved run or a session, drop it on the page.";
         ui.label(RichText::new(text).weak());
         return;
     }
@@ -32,16 +33,17 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
 fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let save = ui.button("Save state").on_hover_text(
-            "The moment that is shown as a .slump file in the folder: the run goes on from it bit for bit, here or \
-                with --restart.",
+            "Saves the visible moment as a .slump file in the folder. The run can continue from it, bit for bit, \
+             here or with --restart.",
         );
         context.note_control("Save state", save.rect);
         if save.clicked() {
             context.ask(Request::SaveState);
         }
         let save = ui.button("Save session").on_hover_text(
-            "All worlds with their record and the runs before, and the window as it is arranged, as a .session file in \
-             the folder (Ctrl S). Opened, it shows this moment; others are computed again when the timeline asks for them.",
+            "Saves all worlds with their record, the earlier runs and the arrangement of the window as a .session \
+             file in the folder (Ctrl S). A session opens at this moment; other moments are computed again when \
+             the timeline asks for them.",
         );
         context.note_control("Save session", save.rect);
         if save.clicked() {
@@ -50,16 +52,16 @@ fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The field for a file that is opened.
+/// Shows the field for a file to be opened.
 fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
-        let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on \
-            the window, too.";
+        let hint = "A file from Save state, Save session, --save or --checkpoint-every. You can also drop it on \
+                    the window.";
         let label = ui.label("Saved").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let is_named = !context.exports.data.saved_run.trim().is_empty();
             let open = ui.add_enabled(is_named, Button::new("Open"));
-            let open = open.on_hover_text("Go on with that run or session, in place of the present one.");
+            let open = open.on_hover_text("Continue that run or session in place of the present one.");
             let edit = TextEdit::singleline(&mut context.exports.data.saved_run)
                 .desired_width(f32::INFINITY)
                 .hint_text("file.slump, file.session");
@@ -74,14 +76,14 @@ fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// What is to be exported.
+/// Shows the choices of an export.
 fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     stretch(ui, context);
     let choices = &mut context.preferences.data;
     ui.horizontal(|ui| {
-        let hint = "Simulated time from one frame of grains and contacts to the next. What is measured of whole \
-            piles has a row each step in any case.";
-        let label = ui.label("A frame each").on_hover_text(hint);
+        let hint = "Simulated time between two frames of grains and contacts. Measures of whole piles always have \
+                    one row per step.";
+        let label = ui.label("A frame every").on_hover_text(hint);
         let every = time_field(&mut choices.every_secs).range(EVERY[0]..=EVERY[1]).speed(1e-3);
         ui.add_enabled(!choices.each_step, every).labelled_by(label.id);
         ui.toggle_value(&mut choices.each_step, "step").on_hover_text("A frame after each step.");
@@ -93,7 +95,7 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
             let mut is_wanted = was_wanted;
             let is_built = check_format(format);
             let check = egui::Checkbox::new(&mut is_wanted, name);
-            // What this build has not may still be taken away.
+            // A format that this build lacks can still be deselected.
             let is_enabled = is_built.is_ok() || was_wanted;
             let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(hint);
             if let Err(refusal) = is_built {
@@ -109,35 +111,35 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
         }
     });
     ui.horizontal(|ui| {
-        let hint = "The recording's own folder, below Folder unless it begins with /.";
+        let hint = "The recording's own folder. It is in Folder unless it begins with /.";
         let label = ui.label("Into").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.checkbox(&mut context.exports.data.overwrite, "Overwrite")
-                .on_hover_text("Remove an earlier recording that is there, as --overwrite does.");
+                .on_hover_text("Remove an earlier recording in this folder, as --overwrite does.");
             super::see::path_field(ui, &mut choices.folder, label.id);
         });
     });
 }
 
-/// What a format is for.
+/// Name and use of a format.
 fn words(format: FormatName) -> (&'static str, &'static str) {
     match format {
-        FormatName::Parquet => ("Parquet", "For pandas, polars and their like."),
+        FormatName::Parquet => ("Parquet", "For pandas, polars and similar programs."),
         FormatName::Csv => ("Text (CSV)", "The same tables as text."),
-        FormatName::Vtk => ("ParaView", "Files of VTK: open vtk/grains.pvd."),
-        FormatName::Ovito => ("OVITO", "Dumps as LAMMPS writes them: open ovito/grains.dump."),
+        FormatName::Vtk => ("ParaView", "VTK files: open vtk/grains.pvd."),
+        FormatName::Ovito => ("OVITO", "LAMMPS dumps: open ovito/grains.dump."),
         FormatName::Fields => ("Fields", "Smoothed fields for ParaView: open fields/fields.pvd."),
     }
 }
 
-/// Which part of the recording.
+/// Shows the choice of an interval of the recording.
 fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let (first, last) = (world.recorded_from_secs, world.recorded_secs);
     let now = world.snapshot.observables.time_secs;
     let mut is_all = context.exports.data.stretch.is_none();
     ui.horizontal(|ui| {
-        let hint = "From the start of the run to the last step that was taken.";
+        let hint = "From the beginning of the run to its last step.";
         if ui.checkbox(&mut is_all, "The whole recording").on_hover_text(hint).changed() {
             context.exports.data.stretch = (!is_all).then_some([first, last]);
         }
@@ -155,7 +157,7 @@ fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
             let here = ui.button("here");
             let said = format!("{name} here");
             here.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &said));
-            if here.on_hover_text("The moment that is shown.").clicked() {
+            if here.on_hover_text("The visible moment.").clicked() {
                 *secs = now;
             }
             ui.end_row();
@@ -163,17 +165,24 @@ fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The button that starts an export, or how far it is.
+/// Shows the button that starts an export, or its progress.
 fn export(ui: &mut Ui, context: &mut PanelContext<'_>, is_ready: bool) {
     if let Some(export) = &context.exports.data.export {
-        return export.show(ui, "Exporting data", "Stop export", "Frames that are written stay.");
+        return export.show(
+            ui,
+            "Exporting data",
+            "Stop export",
+            "Keeps the frames that are already written.",
+        );
     }
     let has_format = !context.preferences.data.formats.is_empty();
     let button = ui.add_enabled(is_ready && has_format, Button::new("Export data"));
     context.note_control("Export data", button.rect);
     let button = button
-        .on_hover_text("Computes what was recorded once more, bit for bit, and writes it down; the run may go on \
-            meanwhile.")
+        .on_hover_text(
+            "Computes the recorded run again, bit for bit, and writes it. The run can continue \
+                        meanwhile.",
+        )
         .on_disabled_hover_text("Choose a format first.");
     if !button.clicked() {
         return;

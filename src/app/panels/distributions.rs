@@ -1,5 +1,5 @@
-//! Panel: how forces, directions, contacts and overlaps are distributed at the moment that is shown, counted on a thread
-//! of its own.
+//! Panel: distributions of forces, directions, contacts and overlaps at the visible moment, counted on a thread of its
+//! own.
 
 use std::time::Duration;
 
@@ -14,15 +14,15 @@ use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Work, outcome_of_ended};
 use crate::granular::{Histogram, histograms};
 
-/// Least time between two moments that are counted.
+/// Least time between two counts.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Histograms of one world, as new as they need be.
+/// Histograms of one world at the visible moment, or a little earlier.
 #[derive(Default)]
 pub(super) struct Distributions {
-    /// Those that were counted last.
+    /// The newest histograms.
     histograms: Vec<Histogram>,
-    /// World and step that they are of, or are being counted of.
+    /// World and step of the newest count.
     of: Option<(usize, u64)>,
     asked: Option<Instant>,
     coming: Option<Work<Vec<Histogram>>>,
@@ -30,9 +30,9 @@ pub(super) struct Distributions {
 
 /// Height of the plot, points.
 const HEIGHT: f32 = 150.0;
-/// Histograms by their names in files, with their buttons and axes.
+/// Histograms: name in files, text of the button, text of the axis.
 const ALL: [(&str, &str, &str); 4] = [
-    ("normal_force", "forces", "N over the mean |N| of contacts that bear a force"),
+    ("normal_force", "forces", "N divided by the mean |N| of contacts with a force"),
     ("contact_orientation", "directions", "direction of normals, degrees from the x axis"),
     ("coordination", "contacts", "contacts of a grain"),
     ("overlap", "overlaps", "log₁₀ of the overlap in mean diameters"),
@@ -65,11 +65,13 @@ impl Distributions {
                 plot.bar_chart(BarChart::new(name, bars).color(colour));
             });
         let total: u64 = histogram.counts.iter().sum();
-        let text = format!("{about}: {total} in all. Outer bars hold what lies beyond.");
+        let text =
+            format!("{about}: {total} in all. The outer bars include all values beyond them.");
         ui.label(RichText::new(text).small().weak());
     }
 
-    /// Has the moment that is shown counted, where it is another one, none is being counted, and the last was a while ago.
+    /// Begins to count the visible moment, if it is a new one, no count is under way, and the last count was some time
+    /// ago.
     fn count(&mut self, ui: &Ui, run: &mut WatchedRun) {
         let Some(world) = run.world() else { return };
         let of = Some((run.selected, world.snapshot.observables.step));
@@ -91,7 +93,8 @@ impl Distributions {
     }
 }
 
-/// A bar a bin. Overlaps have a logarithmic axis. A bin that is open at an end is as wide as the first that is not.
+/// One bar per bin. Overlaps have a logarithmic axis. A bin that is open at one end is as wide as the first bin that
+/// is not.
 fn bars(histogram: &Histogram) -> Vec<Bar> {
     let Histogram { edges, counts, quantity, .. } = histogram;
     let is_log = *quantity == "overlap";
@@ -104,7 +107,7 @@ fn bars(histogram: &Histogram) -> Vec<Bar> {
             [low, high] if low.is_finite() && high.is_finite() => (low, high),
             [low, _] if low.is_finite() => (low, low + usual),
             [_, high] if high.is_finite() => (high - usual, high),
-            // Of a histogram with one bin.
+            // A histogram with only one bin.
             _ => (0.0, usual),
         };
         Bar::new(0.5 * (low + high), count as f64).width(0.92 * (high - low))

@@ -1,4 +1,4 @@
-//! The front: release, again, the pace, the timeline, and the four sliders that everything is about.
+//! The main controls: release, again, the pace, the timeline, and the sliders for Bond, Δt, ρ and μ.
 
 use egui::{Button, ComboBox, RichText, Slider, Ui};
 
@@ -9,7 +9,7 @@ use crate::app::time_text::clock_text;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
 
-/// Paces that are offered, simulated time per time on the wall.
+/// Paces that are offered: simulated time per wall-clock time.
 const PACES: [f64; 7] = [0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
 /// Least width of a slider with its number, points.
@@ -19,7 +19,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.add_enabled_ui(context.run.is_ready(), |ui| {
         ui.horizontal(|ui| {
             release_button(ui, context);
-            let hint = "Back to the start, with the present settings (R)";
+            let hint = "Start again with the present settings (R)";
             let again = ui.add(Button::new("⟲ Again").min_size(egui::vec2(0.0, 30.0)));
             if again.on_hover_text(hint).clicked() {
                 context.run.live.send(Command::Reset);
@@ -30,8 +30,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.add_space(2.0);
         sliders(ui, context);
         ui.horizontal(|ui| {
-            let hint = "On: when a slider is let go, the pile starts again with its new value, and the run before stays as a \
-                        ghost. Off: the new value acts from the next step on.";
+            let hint = "On: when you let go of a slider, the pile starts again with the new value, and the earlier \
+                        run stays as a ghost. Off: the new value acts from the next step on.";
             let name = "start again when I move a slider";
             let switch = ui.checkbox(&mut context.preferences.starts_again, name);
             context.note_control("start again", switch.on_hover_text(hint).rect);
@@ -40,22 +40,28 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The one button that nobody can miss.
+/// Shows the most important button: release, pause or play.
 fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let frame = &context.run.frame;
     let failed = frame.worlds.iter().any(|world| world.failure.is_some());
     let (text, hint) = if frame.playing {
         ("❚❚  Pause", "Stop time (space)")
     } else if frame.held() && !frame.replaying {
-        ("▶  Release", "At t = 0 the walls go, and the pile holds or slumps (space)")
+        ("▶  Release", "Remove the walls: the pile holds or slumps (space)")
     } else if frame.branching {
-        ("▶  Go on", "With what was changed; the run so far is kept under Compare (space)")
+        (
+            "▶  Continue",
+            "Continue with the changed settings; the earlier run is kept under Compare (space)",
+        )
     } else if frame.replaying {
-        ("▶  Replay", "Show the record from this moment on; at its end, compute on (space)")
+        (
+            "▶  Replay",
+            "Show the record from this moment on, and continue to compute at its end (space)",
+        )
     } else if frame.at_start() {
         ("▶  Start", "Let time pass (space)")
     } else {
-        ("▶  Play on", "Let time pass again, from the moment that is shown (space)")
+        ("▶  Resume", "Let time pass again from the visible moment (space)")
     };
     let dark = ui.visuals().dark_mode;
     let (fill, ink) = match frame.playing {
@@ -71,7 +77,7 @@ fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     context.note_control("release", response.rect);
 }
 
-/// How fast time passes.
+/// Shows the list of paces.
 fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let preferences = &mut context.preferences;
     let before = preferences.pace();
@@ -91,14 +97,14 @@ fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let response = shown.response;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Pace"));
     context.note_control("pace", response.rect);
-    response.on_hover_text("Simulated time per time on the wall ([ slower, ] faster)");
+    response.on_hover_text("Simulated time per wall-clock time ([ slower, ] faster)");
     let pace = context.preferences.pace();
     if pace != before {
         context.run.live.send(Command::SetPace(pace));
     }
 }
 
-/// The next slower or faster pace; nothing is faster than all that the machine can.
+/// Changes to the next slower or faster pace. The fastest is the full speed of the machine.
 pub(crate) fn change_pace(context: &mut PanelContext<'_>, is_faster: bool) {
     let now = context.preferences.speed;
     let mut paces = PACES.into_iter();
@@ -132,12 +138,12 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
         }
         context.note_control("timeline", response.rect);
         response.on_hover_text(
-            "The recorded run: drag to any moment, then play on from there; → and ← go a step",
+            "The recorded run: drag to any moment, then continue from there; → and ← move by one step",
         );
     });
 }
 
-/// The sliders of what the scene has of them, side by side.
+/// Shows the main sliders that the scene has, side by side.
 fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some((before, start)) = context.run.wanted_and_start() else { return };
     let (index, mut settings) = (context.run.selected, before);
@@ -164,7 +170,7 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
         true if context.preferences.starts_again => context.run.draft = Some((index, settings)),
         true => {
             context.run.change(index, settings);
-            // In a lesson the effect of a change on a pile at rest is to be seen.
+            // In a lesson the change must act on a pile at rest.
             if context.touring && !context.run.frame.at_start() {
                 context.run.live.send(Command::Play);
             }
@@ -176,7 +182,7 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// A warning of a time step that is too long, or a sentence on what the sliders do.
+/// Shows a warning if the time step is too long, otherwise a hint on the sliders.
 fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let settings = world.controls.settings;
@@ -196,6 +202,6 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     ui.add(egui::Label::new(RichText::new(text).small().weak()).truncate()).on_hover_text(text);
 }
 
-/// What is true of a value that changes while time passes.
-const LIVE: &str = "A new value acts from the next step on. Bonds that hold stay as they are; a longer Δt in mid-fall presses \
-                    fast grains into one another.";
+/// Hint on a value that is changed while time passes.
+const LIVE: &str = "A new value acts from the next step on. Bonds that hold stay as they are; a longer Δt in \
+                    mid-fall presses fast grains into one another.";

@@ -1,5 +1,5 @@
-//! What the mouse does in a world: it moves the view, pins and pulls grains, and with Shift it adds grains, takes
-//! them out, and draws walls.
+//! Actions of the mouse in a world: it moves the view, pins grains and pulls them. With Shift it adds grains, removes
+//! them and draws walls.
 
 use egui::{Color32, DragValue, PointerButton, Pos2, Rect, Response, RichText, Stroke, Ui};
 use glam::DVec2;
@@ -13,10 +13,10 @@ use crate::render::Camera;
 use crate::sim::{Edit, GrainView, NEW_GRAIN_DIAMETERS, Pull, place_of};
 use crate::world::{Boundary, Disc, Edge};
 
-/// How near to a wall the mouse holds it, points.
+/// Distance at which the mouse catches a wall, points.
 const REACH: f32 = 8.0;
-/// What is said where a wall is drawn while time stands still.
-const STANDS_STILL: &str = "Walls go while time passes: let it (space), and draw on.";
+/// Message for a wall that is drawn while time is paused.
+const STANDS_STILL: &str = "Walls move only while time passes: press space, then drag on.";
 
 /// The grain or the wall that the mouse holds.
 #[derive(Default)]
@@ -26,20 +26,20 @@ pub struct Grabbing {
     grip: Option<Grip>,
 }
 
-/// A wall in the hand of the mouse.
+/// A wall that the mouse holds.
 #[derive(Clone, Copy, Debug)]
 struct Grip {
     /// Index of the world.
     pub world: usize,
     /// Index of the boundary.
     pub boundary: usize,
-    /// From the place of the boundary to where it is held, m.
+    /// Vector from the reference point of the boundary to the point at which it is held, m.
     pub from_place: DVec2,
-    /// Where it was last told to go, m.
+    /// Last position that was sent to the solver thread, m.
     pub sent: Option<DVec2>,
 }
 
-/// Where a world is in the window.
+/// Place of a world in the window.
 pub(super) struct WorldCell<'a> {
     pub index: usize,
     pub cell: Rect,
@@ -50,7 +50,7 @@ pub(super) struct WorldCell<'a> {
 }
 
 impl WorldCell<'_> {
-    /// The place of the mouse if it hovers here or was pressed here.
+    /// Position of the mouse if it hovers over this world or was pressed here.
     fn pointer(&self) -> Option<Pos2> {
         self.response.hover_pos().or_else(|| self.response.interact_pointer_pos())
     }
@@ -65,12 +65,12 @@ impl WorldCell<'_> {
         self.cell.center() + egui::vec2(x, -y) / self.pixels_per_point as f32
     }
 
-    /// A length (m) in points.
+    /// Converts a length from m to points.
     pub(super) fn points(&self, metres: f64) -> f32 {
         self.camera.pixels(metres) / self.pixels_per_point as f32
     }
 
-    /// A length (points) in metres.
+    /// Converts a length from points to m.
     fn metres(&self, points: f32) -> f64 {
         f64::from(points) * self.pixels_per_point * self.camera.metres_per_pixel
     }
@@ -82,7 +82,7 @@ impl WorldCell<'_> {
         Some(GrainRef { world: self.index, grain })
     }
 
-    /// Rings around the grains that are hovered, pinned and grabbed.
+    /// Draws rings around the grains that are hovered, pinned and grabbed.
     pub(super) fn marks(&self, ui: &Ui, mouse: &Grabbing, context: &PanelContext<'_>) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let accent = theme::accent(ui.visuals().dark_mode);
@@ -123,7 +123,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Has the mouse act.
+    /// Carries out the actions of the mouse.
     pub(super) fn act(&self, ui: &Ui, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let (response, pointer) = (self.response, self.pointer());
         let changes = ui.input(|input| input.modifiers.shift);
@@ -181,7 +181,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Has the wall in the hand follow the mouse, or lets go of it.
+    /// Moves the held wall to the mouse, or releases it.
     fn draw_wall(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let Some(mut grip) = mouse.grip else { return };
         if !self.response.dragged() {
@@ -206,7 +206,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Takes out the grain under the mouse, or puts one where there is none.
+    /// Removes the grain under the mouse, or adds one if there is none.
     fn change_grains(&self, context: &mut PanelContext<'_>) {
         let Some(at) = self.pointer() else { return };
         context.run.selected = self.index;
@@ -214,7 +214,7 @@ impl WorldCell<'_> {
             Some(found) => Edit::Remove(found.grain as u32),
             None => Edit::Add(self.new_grain(context.preferences, at)),
         };
-        // Grains may go by other numbers from here on.
+        // Grains may have other numbers from now on.
         context.run.pinned = None;
         context.run.live.send(Command::Edit(self.index, edit));
     }
@@ -241,7 +241,7 @@ impl WorldCell<'_> {
         near.min_by(|one, other| one.1.total_cmp(&other.1)).map(|(index, _)| index)
     }
 
-    /// With Shift held: what a click would put in or take out, and the wall that a drag would draw.
+    /// With Shift held, shows what a click would add or remove and which wall a drag would draw.
     fn marks_of_hand(&self, ui: &Ui, grip: Option<Grip>, preferences: &Preferences, at: Pos2) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let dark = ui.visuals().dark_mode;
@@ -278,8 +278,8 @@ impl WorldCell<'_> {
     }
 }
 
-/// Where a wall goes whose place is to come to a point: a plane along its normal alone, since along itself it is the
-/// same plane.
+/// Goal of a wall whose reference point is drawn to a point. A plane moves only along its normal, because a motion in
+/// its own plane changes nothing.
 fn goal(boundary: &Boundary, to: DVec2) -> DVec2 {
     match boundary {
         Boundary::HalfSpace { point, normal } | Boundary::Piston { point, normal, .. } => {
@@ -308,14 +308,15 @@ fn distance(boundary: &Boundary, point: DVec2) -> f64 {
 pub(super) fn show(ui: &mut Ui, preferences: &mut Preferences) {
     ui.label(
         RichText::new(
-            "With Shift held, a click on the ground puts a grain there, a click on a grain takes it out, and a drag draws \
-             a wall along while time passes. All of it is in the record and in sessions, and in no command line or link.",
+            "With Shift held, a click on the ground adds a grain, a click on a grain removes it, and a drag moves \
+             a wall while time passes. The record and sessions contain these changes; command lines and links do \
+             not.",
         )
         .small()
         .weak(),
     );
     ui.horizontal(|ui| {
-        let hint = "Diameter of a grain that Shift click puts in, in mean diameters.";
+        let hint = "Diameter of a grain that Shift and a click add, in mean diameters.";
         let label = ui.label("New grain").on_hover_text(hint);
         let value = DragValue::new(&mut preferences.new_grain_diameters);
         let value = value

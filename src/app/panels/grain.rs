@@ -1,4 +1,4 @@
-//! The pinned grain: on its page with its contacts, or in a corner of the scene.
+//! The pinned grain, on its page with its contacts, or in a corner of the scene.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -9,7 +9,7 @@ use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
-/// Shows the pinned grain with its contacts; nothing where there is none.
+/// Shows the pinned grain with its contacts, if there is one.
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let Some(pinned) = run.pinned else { return };
     let Some(world) = run.frame.worlds.get(pinned.world) else { return };
@@ -22,7 +22,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.separator();
 }
 
-/// Shows it in a corner of the scene where its page is not open.
+/// Shows the pinned grain in a corner of the scene if its page is not open.
 pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     if context.preferences.page == Some(Page::Pile) {
         return;
@@ -46,15 +46,15 @@ pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Slower than this, m/s, a grain rests: what is left is the solver's.
+/// Speed below which a grain counts as resting, m/s. Slower motion is an error of the solver.
 const AT_REST: f64 = 1e-8;
 
-/// A velocity, m/s, or nothing of one at which a grain rests.
+/// The velocity, m/s, or 0 if the grain rests.
 pub(super) fn unless_at_rest(velocity: f64) -> f64 {
     if velocity.abs() < AT_REST { 0.0 } else { velocity }
 }
 
-/// The state of a grain, as a small table.
+/// Shows the state of a grain as a small table.
 pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     let grain = &world.snapshot.grains[index];
     let diameter = world.snapshot.surroundings.mean_diameter;
@@ -70,7 +70,7 @@ pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         row("radius", format!("{:.3} d", grain.radius / diameter));
         let speed = |along: f64| si(unless_at_rest(along), "m/s");
         row("velocity", format!("{}, {}", speed(grain.velocity.x), speed(grain.velocity.y)));
-        // No minus before a zero.
+        // Avoids "-0.000".
         row("spin", format!("{:.3} rad/s", grain.angular_velocity).replace("-0.000", "0.000"));
         row("overlap", format!("{:.3} % of d", 100.0 * grain.overlap / diameter));
         row("force Σ|N|", si(grain.force, "N"));
@@ -78,7 +78,7 @@ pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     });
 }
 
-/// The grains that a grain is in contact with.
+/// Grains in contact with a grain.
 pub(super) fn partners(snapshot: &Snapshot, index: usize) -> impl Iterator<Item = usize> {
     let number = index as u32;
     snapshot.contacts.iter().filter_map(move |contact| match contact.other_grain? {
@@ -122,12 +122,12 @@ fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
 /// Larger numbers are written with an exponent.
 const MOST_WRITTEN: f64 = 1e4;
 
-/// A number to three decimals, in few characters however large it is.
+/// Formats a number with three decimals, or with an exponent if it is large.
 pub(super) fn compact(number: f64) -> String {
     if number.abs() < MOST_WRITTEN { format!("{number:.3}") } else { format!("{number:.2e}") }
 }
 
-/// A number with four digits and a prefixed unit.
+/// Formats a number with four digits and a unit with a prefix.
 pub(super) fn si(value: f64, unit: &str) -> String {
     let (prefix, factor) = si_prefix(value);
     let number = value / factor;

@@ -3,40 +3,40 @@
 use egui::{Align2, RichText, Ui};
 
 const KEYS: [(&str, &str); 16] = [
-    ("space", "release, pause, play on"),
+    ("space", "release, pause, resume"),
     ("→  ←", "one step on, one step back"),
-    ("R", "again from the start; this run is kept"),
+    ("R", "start again; this run is kept"),
     ("Ctrl Z", "undo: back to the run before"),
     ("Ctrl Y", "redo: on to the run after, as with Ctrl Shift Z"),
     ("[  ]", "slower, faster"),
-    ("B", "fold the bars: the scene is the window"),
-    ("F", "frame the whole scene"),
+    ("B", "hide the bars: the scene fills the window"),
+    ("F", "show the whole scene"),
     ("S", "save a picture of the scene"),
     ("Ctrl S", "save the session: worlds, record and window"),
-    ("Ctrl V", "open a link that was copied"),
+    ("Ctrl V", "open a copied link"),
     ("H", "this help"),
     ("Tab", "next control"),
     ("Ctrl +  −", "larger and smaller window contents"),
-    ("Ctrl Shift G", "open the graphics device anew; the run goes on"),
+    ("Ctrl Shift G", "open the graphics device again; the run continues"),
     ("Ctrl Q", "close the window"),
 ];
 
 const MOUSE: [(&str, &str); 9] = [
     ("drag the ground", "move the scene"),
     ("wheel", "zoom to the cursor"),
-    ("double click", "frame the whole scene"),
+    ("double click", "show the whole scene"),
     ("point at a grain", "its state"),
     ("click a grain", "pin it: its contacts are listed"),
     ("drag a grain", "pull it with a spring"),
-    ("Shift click the ground", "put a grain there, as large as By hand says"),
-    ("Shift click a grain", "take it out"),
-    ("Shift drag a wall", "draw it along while time passes"),
+    ("Shift click the ground", "add a grain, as large as New grain under Pile says"),
+    ("Shift click a grain", "remove it"),
+    ("Shift drag a wall", "move it while time passes"),
 ];
 
-/// Height of what is around the text, points.
+/// Height of the overlay's frame and title, points.
 const FRAME: f32 = 70.0;
 
-/// Shows the overlay where it is wanted.
+/// Shows the overlay if it is open.
 pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
     if !*is_open {
         return;
@@ -48,7 +48,7 @@ pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
         .open(is_open)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(440.0);
-            // On a low window the end is within reach, too.
+            // In a low window the text can be scrolled.
             let room = ui.ctx().content_rect().height() - FRAME;
             egui::ScrollArea::vertical().max_height(room).show(ui, contents);
         });
@@ -56,10 +56,9 @@ pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
 
 fn contents(ui: &mut Ui) {
     ui.label(
-        "A pile of cohesive grains, computed by Contact Dynamics. The time step Δt is no mere \
-                 matter of accuracy: cohesion cancels an opening speed of Bond·g·Δt in every step, \
-                 so that a weakly cohesive pile holds better at a larger Δt. Drag a slider, let go, and \
-                 the pile starts again with the new value.",
+        "A pile of cohesive grains, computed by Contact Dynamics. The time step Δt does not only set the accuracy: \
+         cohesion cancels an opening speed of Bond·g·Δt in every step, so that a weakly cohesive pile holds better \
+         at a larger Δt. Drag a slider and let go: the pile starts again with the new value.",
     );
     ui.label(
         "The paper is A. Abramian and L. Staron, Time Steps v.s. Cohesion (2020, hal-02570097).",
@@ -76,6 +75,6 @@ fn contents(ui: &mut Ui) {
         });
         ui.add_space(6.0);
     }
-    ui.label("Type any value into the field above a slider. Drop a scene (TOML), discs (CSV), a saved run (.slump) or a \
-        session on the window to open them.");
+    ui.label("Type any value into the field above a slider. To open a scene (TOML), discs (CSV), a saved run \
+              (.slump) or a session, drop it on the window.");
 }

@@ -15,12 +15,12 @@ use crate::live::Command;
 
 /// Width of the sidebar, points.
 const SIDEBAR: f32 = 364.0;
-/// In less width than this, points, a page of the sidebar takes the place of all else, as on a telephone.
+/// Below this width, points, a page of the sidebar takes the whole window, as on a telephone.
 const NARROW: f32 = 600.0;
 /// Height of the plots, points.
 const PLOTS: f32 = 150.0;
 
-/// The panels.
+/// All panels of the window.
 #[derive(Default)]
 pub struct Panels {
     /// The middle of the window.
@@ -33,7 +33,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Draws all of them.
+    /// Draws all panels.
     pub(crate) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         fill(ui, ui.max_rect(), ui.visuals().panel_fill);
         let has_page = (context.preferences.page.is_some() || self.trust.is_open)
@@ -73,7 +73,7 @@ impl Panels {
         bar(Panel::bottom("status")).show(ui, |ui| status::show(ui, context, trust, help));
     }
 
-    /// All that stands around the scene.
+    /// Draws the bars and panels around the scene.
     fn bars(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         self.lesson_line(ui, context);
         let mut is_open = context.preferences.page.is_some() || self.trust.is_open;
@@ -107,7 +107,7 @@ impl Panels {
         }
     }
 
-    /// The pages, of which one is open.
+    /// Shows the tabs and the open page.
     fn sidebar(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
@@ -144,7 +144,7 @@ fn sidebar_frame() -> Frame {
     Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 })
 }
 
-/// The way back from the scene alone.
+/// The button that shows the bars again.
 fn unfold(ui: &Ui, context: &mut PanelContext<'_>) {
     let area = egui::Area::new(egui::Id::unique("unfold"));
     area.anchor(egui::Align2::RIGHT_TOP, [-8.0, 8.0]).show(ui.ctx(), |ui| {
@@ -154,7 +154,7 @@ fn unfold(ui: &Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// What the middle says while a start is made, and the button that gives it up.
+/// Shows the progress of a load and the button that cancels it.
 fn waiting(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(progress) = context.run.frame.loading.clone() else { return };
     let area = egui::Area::new(egui::Id::unique("loading"));

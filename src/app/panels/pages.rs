@@ -22,16 +22,16 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// Forgets the measurement of a step, because its run is gone.
+    /// Discards the measurement of a step, because its run no longer exists.
     pub(crate) fn forget_race(&mut self) {
         self.race = None;
     }
 
     /// Shows a page.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, page: Page) {
-        // A name would make the panel as wide as it is long.
+        // The world's number, not its name: a long name would widen the panel.
         if context.run.compares() && matches!(page, Page::Solver | Page::Save) {
-            let text = format!("Of world {}", context.run.selected + 1);
+            let text = format!("For world {}", context.run.selected + 1);
             ui.label(RichText::new(text).strong());
         }
         match page {
@@ -85,7 +85,7 @@ impl Pages {
         let list = self.gallery.show(ui, context, &current, &groups).labelled_by(label.id);
         context.note_control("hard scenes", list.rect);
         compare::method_presets(ui, context.run);
-        // It would keep a page waiting for seconds.
+        // In a browser the measurement would block the page for seconds.
         if !IN_BROWSER {
             let race = &mut self.race;
             folded(ui, "Speed and accuracy", |ui| speed::show(ui, context.run, race));
@@ -93,7 +93,7 @@ impl Pages {
     }
 }
 
-/// What is computed only for those who ask for it.
+/// Shows a panel in a fold, so that it is computed only if the user opens it.
 fn folded(ui: &mut Ui, title: &'static str, show: impl FnOnce(&mut Ui)) {
     ui.separator();
     CollapsingHeader::new(title).show_unindented(ui, show);

@@ -1,4 +1,4 @@
-//! Panel: the stepper with its contact law, the numbers that are not at the front, and what all of them mean together.
+//! Panel: the stepper with its contact law, the parameters that have no main slider, and quantities derived from them.
 
 use egui::{RichText, Ui};
 
@@ -28,11 +28,12 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     derived(ui, run, &settings);
 }
 
-/// The ways to step; remedies that the chosen one does not take are left out.
+/// Shows the choice of the stepper. Remedies that the new stepper does not take are switched off.
 fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     let before = settings.stepper;
     ui.horizontal(|ui| {
-        ui.label("Stepper").on_hover_text("The contact law and the way to take a step.");
+        ui.label("Stepper")
+            .on_hover_text("The rule that advances the grains by Δt, with its contact law.");
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().button_padding.x = 5.0;
         for &stepper in Stepper::ALL {
@@ -51,7 +52,7 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     }
 }
 
-/// What the numbers mean together.
+/// Shows the derived quantities.
 fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
     let parameters = &settings.parameters;
     let Some(world) = run.world() else { return };
@@ -66,7 +67,7 @@ fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
         };
         row(
             "cohesive time Bond·Δt/√(d/g)",
-            "What the time step does to cohesion, in one number (paper §3.3).",
+            "The effect of the time step on cohesion, in one number (paper §3.3).",
             compact(parameters.cohesive_time(diameter, g)),
         );
         row(
@@ -78,7 +79,7 @@ fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
             let distance = parameters.debonding_distance * diameter;
             row(
                 "escape speed √(2C₀δc/m_ij)",
-                "A pair that is thrown apart faster parts, at every time step.",
+                "A pair that separates faster than this parts, at every time step.",
                 si(
                     escape_speed(parameters.bond, parameters.cohesion_acceleration(g), distance),
                     "m/s",
@@ -86,14 +87,14 @@ fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
             );
         }
         if let Some(secs) = world.contact_time_secs {
-            let hint = "How long two grains of the mean mass push each other that meet.";
+            let hint = "Duration of a collision of two grains of the mean mass.";
             row("contact time t_c", hint, millis_text(secs));
         }
         if let Some(work) = world.fracture_work {
             row(
                 "work of fracture",
-                "What it takes to break the bond of two grains of the mean mass m slowly: C₀δc under range, C₀²/2k \
-                 under dem. m·g·d lifts one of them by a diameter.",
+                "Work of breaking the bond of two grains of the mean mass m slowly: C₀δc under range, C₀²/2k under \
+                 dem. m·g·d lifts one of them by a diameter.",
                 format!("{} = {:.1e} m g d", si(work.joules, "J"), work.over_mgd),
             );
         }

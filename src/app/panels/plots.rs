@@ -1,4 +1,4 @@
-//! Panel: what the run measures, against simulated time.
+//! Panel: measures of the run against simulated time.
 
 use egui::{Color32, RichText, Ui};
 
@@ -18,7 +18,7 @@ use crate::output::write_file;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 use crate::study::png::write_png;
 
-/// Part of the width that the slump against Δt gets.
+/// Fraction of the width that the plot of slump against Δt gets.
 const FIGURE_PART: f32 = 0.4;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The slump of the piles that were released against Δt, where slump is plotted.
+/// The plot of slump against Δt, if slump is plotted.
 fn figure(ui: &Ui, context: &PanelContext<'_>) -> Option<TimeStepFigure> {
     let mut shown = QUANTITIES.iter().filter(|it| is_shown(context.run, context.preferences, it));
     let slump_is_shown = shown.any(|quantity| quantity.name == "slump");
@@ -42,9 +42,9 @@ fn figure(ui: &Ui, context: &PanelContext<'_>) -> Option<TimeStepFigure> {
     TimeStepFigure::new(released, ui.visuals().dark_mode).filter(|_| slump_is_shown)
 }
 
-/// The buttons that save or clear the figure, from the right.
+/// Shows the buttons that save or clear the figure, from right to left.
 fn figure_buttons(ui: &mut Ui, context: &mut PanelContext<'_>, figure: &TimeStepFigure) {
-    let hint = "Forget the points, except those of the piles that are shown.";
+    let hint = "Remove the points, except those of the visible piles.";
     let clear = ui.small_button("Clear").on_hover_text(hint);
     context.note_control("clear figure", clear.rect);
     if clear.clicked() {
@@ -104,7 +104,7 @@ fn data(ui: &Ui, context: &PanelContext<'_>) -> PlotData {
     }
 }
 
-/// The worlds of the run before.
+/// The worlds of the earlier run.
 fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
     let worlds = context.ghost().map_or(&[][..], |run| &run.worlds).iter();
     let pairs = worlds.zip(&context.run.frame.worlds).map(|(before, now)| {
@@ -119,7 +119,7 @@ fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
     pairs.collect()
 }
 
-/// True if a quantity is chosen, or where nothing that is chosen says anything of what is open.
+/// True if a quantity is plotted: the user chose it, or no chosen quantity has a meaning in this scene.
 fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Observables>) -> bool {
     let is_chosen = |quantity: &Quantity<Observables>| {
         means_something(run, quantity)
@@ -128,16 +128,16 @@ fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Obs
     is_chosen(quantity) || (means_something(run, quantity) && !QUANTITIES.iter().any(is_chosen))
 }
 
-/// True if a quantity says anything of what is open.
+/// True if a quantity has a meaning in this scene.
 fn means_something(run: &WatchedRun, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || run.slumps()
 }
 
-/// The line above the plots: what folds them, and what other piles say beside the selected world.
+/// Shows the line above the plots: the button that folds them, and the result of other piles.
 pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let text = if context.preferences.plots { "▾ Plot" } else { "▸ Plot" };
-        let plots = ui.selectable_label(false, text).on_hover_text("Show or fold the plots");
+        let plots = ui.selectable_label(false, text).on_hover_text("Show or hide the plots");
         context.note_control("Plots", plots.rect);
         context.preferences.plots ^= plots.clicked();
         let hint = context.ensemble.about(context.run.selected);
@@ -150,7 +150,7 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The effect of the last change of settings on other piles, at the moment that is shown.
+/// A sentence on the effect of the last change of settings on other piles, at the visible moment.
 fn effect(context: &PanelContext<'_>) -> Option<String> {
     let frame = &context.run.frame;
     let mut worlds = context.ghost()?.worlds.iter().zip(&frame.worlds);
@@ -160,7 +160,7 @@ fn effect(context: &PanelContext<'_>) -> Option<String> {
     context.ensemble.effect(before, now, frame.time_secs()).filter(|_| !frame.at_start())
 }
 
-/// What is plotted, and what saves it.
+/// Shows the choice of quantities and the buttons that save plots.
 pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Plot");
@@ -176,7 +176,7 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
             }
         }
         ui.toggle_value(&mut context.preferences.chosen_plot.on, "y over x")
-            .on_hover_text("Any quantity that steps measure against any other.");
+            .on_hover_text("Plot any measured quantity against any other.");
     });
     let chosen = &mut context.preferences.chosen_plot;
     if chosen.on {
@@ -190,10 +190,10 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// What saves the plots, and how they were thinned.
+/// Shows the buttons that save the plots, and the spacing of the plotted steps.
 fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let stem = format!("{}-curves", context.run.file_stem());
-    // A page must not wait for a device that draws.
+    // A browser version must not wait for a graphics device.
     if !IN_BROWSER
         && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
     {
@@ -208,7 +208,8 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
             Ok(path)
         });
     }
-    let hint = "Save all observables of all worlds; a text beside the table says what they are of.";
+    let hint =
+        "Save all observables of all worlds. A text file next to the table describes the run.";
     if ui.button("Curves as CSV").on_hover_text(hint).clicked() {
         let worlds = context.run.frame.worlds.iter();
         let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
@@ -222,7 +223,7 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let worlds = context.run.frame.worlds.iter();
     let spacing_secs = worlds.map(|world| world.curve.least_spacing_secs()).fold(0.0, f64::max);
     if spacing_secs > 0.0 {
-        let text = format!("plotted: a step every {}", millis_text(spacing_secs));
+        let text = format!("plotted: one step every {}", millis_text(spacing_secs));
         ui.label(RichText::new(text).small().weak());
     }
 }

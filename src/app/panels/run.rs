@@ -1,4 +1,4 @@
-//! Panel: which scene and how many grains; the runs before; and what makes the run again.
+//! Panel: the scene and the number of grains, the earlier runs, and the command line.
 
 use egui::{Align, Button, RichText, Ui};
 
@@ -14,28 +14,29 @@ use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 
 /// Scenes that are made to break methods are for experts (the page Law, solver).
 const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiments];
-/// Most grains that the panel offers; the command line takes more.
+/// Largest number of grains that the panel offers. The command line takes more.
 const MOST_GRAINS: usize = 20_000;
 
-/// Piles of that many grains cost enough to say so, and what was measured of just as many (`docs/runs.md`, new piles),
-/// s of one core.
+/// Number of grains from which the panel states the cost of a pile. The cost was measured at this number
+/// (`docs/runs.md`, new piles), s of one core.
 const LARGE: usize = 2_000;
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;
-/// A solved step of that many grains that slump, ms.
+/// Time of a solved step of a slumping pile with [`LARGE`] grains, ms.
 const STEP_MILLIS: f64 = 60.0;
-/// How the grains of a new pile are put in place.
+/// Methods of deposition, with their names and hints.
 const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     (
         Deposition::Rain,
         "Rain",
-        "Grains rain into the box, as in the paper's pile: seconds for hundreds, minutes for thousands.",
+        "Grains rain into the box, as in the paper's pile. This takes seconds for hundreds of grains, minutes for \
+         thousands.",
     ),
     (
         Deposition::DropAndRoll,
         "Roll",
-        "Each grain rolls to where two others hold it: seconds for thousands, but another pile, denser and with \
-            more bonds.",
+        "Each grain rolls until two others hold it. This takes seconds for thousands of grains, but makes another \
+         pile, denser and with more bonds.",
     ),
 ];
 
@@ -46,12 +47,12 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Ga
     }
 }
 
-/// What makes the run again without a window.
+/// Shows the buttons that copy a command line or a link.
 pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let copy = ui.button("Copy command line").on_hover_text(
-            "The command that computes the selected world from its start with the present settings, without a \
-             window and to the last digit.",
+            "Copies the command that computes the selected world from its initial state with the present settings, \
+             without a window and to the last digit.",
         );
         if copy.clicked()
             && let Some(line) = context.run.command_line()
@@ -62,8 +63,8 @@ pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
             }
         }
         let copy = ui.button("Copy link").on_hover_text(
-            "A line of text that opens all worlds as they are now: scene, settings, changes on the way, and the \
-             moment. Paste it into a window (Ctrl V), or give it to slump --open.",
+            "Copies a line of text that opens all worlds as they are now: scene, settings with their changes, and \
+             the visible moment. Paste it into a window (Ctrl V), or pass it to slump --open.",
         );
         if copy.clicked() {
             context.ask(Request::CopyLink);
@@ -82,7 +83,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
         context.run.frame.start.as_ref().map_or("", |start| start.scene.name.as_str()).to_owned();
     ui.horizontal(|ui| {
         let label = ui.label("Scene").on_hover_text(
-            "Drop a TOML scene, a CSV of discs or a saved run on the window to open it.",
+            "To open a TOML scene, a CSV file of discs or a saved run, drop it on the window.",
         );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let list = gallery.show(ui, context, &current, &SCENE_GROUPS).labelled_by(label.id);
@@ -94,7 +95,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
     }
 }
 
-/// What is typed for a new pile.
+/// Shows the fields of a new pile.
 fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let id = egui::Id::unique("new pile");
     let typed = ui.data(|data| data.get_temp::<NewPile>(id));
@@ -104,7 +105,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let grains = egui::DragValue::new(&mut pile.grains).range(1..=MOST_GRAINS).speed(2.0);
         let grains = ui.add(grains).labelled_by(label.id);
         if grains.on_hover_text("Number of grains of a new pile.").changed() {
-            // In a box of this width so many grains make a pile as steep as the paper's.
+            // In a box of this width, this number of grains makes a pile as steep as the paper's.
             let paper = NewPile::default();
             let scale = (pile.grains as f64 / paper.grains as f64).sqrt();
             pile.box_width_in_diameters = (paper.box_width_in_diameters * scale).round();
@@ -114,7 +115,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.add(width.range(3.0..=1e4).max_decimals(1).suffix(" d").speed(0.5))
             .labelled_by(label.id)
             .on_hover_text(
-                "Width of the box in diameters: with the grains, how high and steep a pile is.",
+                "Width of the box in diameters. With the number of grains it sets how high and steep the pile is.",
             );
     });
     ui.horizontal(|ui| {
@@ -125,7 +126,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         for (way, name, hint) in DEPOSITIONS {
             ui.selectable_value(&mut pile.deposition, way, name).on_hover_text(hint);
         }
-        let fresh = ui.button("New pile").on_hover_text("Make it, and let it come to rest.");
+        let fresh = ui.button("New pile").on_hover_text("Make this pile and let it come to rest.");
         context.note_control("new pile", fresh.rect);
         if fresh.clicked() {
             let config = pile_like_this(context.run, &pile);
@@ -138,20 +139,20 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.data_mut(|data| data.insert_temp(id, pile));
 }
 
-/// What a large pile costs before it can be released, and how it is stepped then.
+/// Text on the cost of a large pile before its release, and of its steps afterwards.
 fn cost(grains: usize) -> String {
-    // Rain's steps are as many as its fall takes, which goes with the root of the height.
+    // The steps of a rain last as long as its fall, which grows as the root of the height.
     let part = grains as f64 / LARGE as f64;
     let minutes = (RAIN_SECS * part.powf(1.25) / 60.0).ceil();
     let secs = ROLL_SECS * part.powf(1.8);
     let step_millis = STEP_MILLIS * part.powf(1.3);
     format!(
-        "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. A step takes some {step_millis:.0} ms; \
-         under Fast, for piles without cohesion, a fifteenth of that or less."
+        "{grains} grains: rain takes about {minutes:.0} min, rolling {secs:.1} s. A step takes about \
+         {step_millis:.0} ms; with Fast, for piles without cohesion, at most a fifteenth of that."
     )
 }
 
-/// A new pile with the numbers that the controls show.
+/// Configuration of a new pile with the present settings.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     let config = run.config();
     let &NewPile { grains, seed, box_width_in_diameters, deposition } = pile;
@@ -171,10 +172,10 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     }
 }
 
-/// Width of the fields of names, points.
+/// Width of the name fields, points.
 const NAME_WIDTH: f32 = 84.0;
 
-/// Earlier runs, to be gone back to, and the newest of them as a ghost; nothing where there are none.
+/// Shows the earlier runs, if there are any: a button for each, and a box that shows the newest as a ghost.
 pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if context.run.frame.past.is_empty() {
         return;
@@ -186,7 +187,7 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.checkbox(&mut context.preferences.ghost, "Ghost")
-                .on_hover_text("Show the last of them: its curves in grey, its grains as outlines.");
+                .on_hover_text("Show the newest earlier run: its curves in grey, its grains as outlines.");
         });
     });
     ui.horizontal(|ui| {
@@ -212,7 +213,8 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The field that names a run. What is typed is kept here until the field is left: a name comes back a step later.
+/// The field for the name of a run. It stores the typed text until it loses the focus, because the name returns from
+/// the solver thread a step later.
 fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &str) {
     let id = egui::Id::unique(("name of run", number));
     let typed = ui.data(|data| data.get_temp(id));
@@ -229,7 +231,7 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     } else {
         ui.data_mut(|data| data.remove::<String>(id));
     }
-    response.on_hover_text("What to call it; sessions keep the name.");
+    response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
 /// The settings of an earlier run: of one world all sliders and the slump, of several worlds the differences.

@@ -1,4 +1,4 @@
-//! The middle of the window: the worlds and what the mouse does to them, or a new pile in the making.
+//! The middle of the window: the worlds and the mouse, or the progress of a new pile.
 
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
@@ -13,14 +13,14 @@ use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Legend, ScaleBar, Style, scene_picture};
 
-/// Height of a compared world's title, points.
+/// Height of the title of a compared world, points.
 const TITLE_HEIGHT: f32 = 22.0;
-/// Grains of a ghost at the most: more outlines would hide what is in front.
+/// Largest number of outlines of a ghost. More would hide the present grains.
 const MOST_OUTLINES: usize = 3_000;
 /// Space between compared worlds, points.
 const GAP: f32 = 6.0;
 
-/// The worlds, and the mouse among them.
+/// The worlds and the mouse.
 #[derive(Default)]
 pub struct ScenePanel {
     /// The grain or the wall that the mouse holds.
@@ -29,12 +29,12 @@ pub struct ScenePanel {
 }
 
 impl ScenePanel {
-    /// Lets go of a grain that is gone.
+    /// Drops a grabbed grain that no longer exists.
     pub(crate) fn follow(&mut self, run: &WatchedRun) {
         self.mouse.grabbed = self.mouse.grabbed.filter(|&grain| run.has(grain));
     }
 
-    /// Shows all worlds in the space that is left.
+    /// Shows all worlds in the remaining space.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let area = ui.available_rect_before_wrap();
         ui.allocate_rect(area, Sense::hover());
@@ -75,7 +75,7 @@ impl ScenePanel {
         }
     }
 
-    /// One world: its picture, its words, and the mouse.
+    /// Shows one world with its labels and carries out the actions of the mouse.
     fn world(
         &mut self,
         ui: &mut Ui,
@@ -109,7 +109,7 @@ impl ScenePanel {
     }
 }
 
-/// The rectangles of `count` worlds: rows of up to three.
+/// Rectangles of `count` worlds, in rows of up to three.
 fn cells(area: Rect, count: usize) -> Vec<Rect> {
     let columns = columns(count).max(1);
     let rows = count.div_ceil(columns);
@@ -124,7 +124,7 @@ fn cells(area: Rect, count: usize) -> Vec<Rect> {
 }
 
 impl WorldCell<'_> {
-    /// The same world of the run before at the same simulated time, and its settings.
+    /// Draws the same world of the earlier run at the same simulated time, and a label with its settings.
     fn ghost(&self, ui: &Ui, context: &PanelContext<'_>) {
         let Some(run) = context.ghost() else { return };
         let Some(world) = run.worlds.get(self.index) else { return };
@@ -151,7 +151,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Title and label of the scale bar.
+    /// Draws the title and the label of the scale bar.
     fn words(&self, ui: &Ui, context: &PanelContext<'_>, style: &Style, size: [u32; 2]) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let ink = theme::color32(style.theme.palette().ink);
@@ -187,7 +187,7 @@ impl WorldCell<'_> {
     }
 }
 
-/// Shows it in place of the worlds, in so many pixels. True if there is anything to see.
+/// Shows a pile that is being deposited in place of the worlds. Returns false if there is nothing to show.
 fn show_making(
     ui: &Ui,
     context: &mut PanelContext<'_>,
@@ -198,7 +198,8 @@ fn show_making(
     let preview = context.run.frame.loading.as_ref().and_then(|it| it.preview.clone());
     let Some(preview) = preview else { return false };
     let [lower, upper] = preview.view;
-    // Forces and velocities are those of the run alone, and the scale changes as grains come down.
+    // Forces and velocities of a deposition are not part of the run. The scale bar would change while the grains come
+    // down.
     let style = Style {
         show_forces: false,
         show_velocities: false,
@@ -215,12 +216,12 @@ fn show_making(
 
 /// Length of the arrow, points.
 const LENGTH: f32 = 34.0;
-/// Its distance from the upper right corner, points.
+/// Distance of the arrow from the upper right corner, points.
 const MARGIN: f32 = 30.0;
-/// Gravity that is closer to straight down than this, as a part of itself, needs no arrow.
+/// Relative deviation from straight down below which gravity needs no arrow.
 const STRAIGHT: f64 = 1e-9;
 
-/// Draws the arrow of a world, where it is asked for, or gravity is not straight down.
+/// Draws an arrow for gravity, if the user wants one or if gravity is not straight down.
 fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) {
     let shows = |gravity: &DVec2| {
         *gravity != DVec2::ZERO && (context.preferences.gravity || is_tilted(*gravity))
@@ -234,7 +235,7 @@ fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) 
     let stroke = Stroke::new(1.8, ink);
     let painter = ui.painter().with_clip_rect(cell);
     painter.arrow(middle - 0.5 * LENGTH * along, LENGTH * along, stroke);
-    // Beside the arrow, wherever that points.
+    // The letter is next to the arrow in any direction.
     let aside = middle + 12.0 * Vec2::new(along.y, -along.x);
     painter.text(aside, Align2::CENTER_CENTER, "g", FontId::proportional(13.0), ink);
 }

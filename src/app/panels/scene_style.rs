@@ -1,4 +1,4 @@
-//! The style in which worlds are drawn, and how many of them stand in a row.
+//! Drawing style of the worlds, and their arrangement in rows.
 
 use crate::app::preferences::Preferences;
 use crate::app::watched_run::WatchedRun;
@@ -27,7 +27,7 @@ pub(super) fn own_style(preferences: &Preferences, dark: bool) -> Style {
     Style { theme, ..preferences.style.clone() }
 }
 
-/// How many of `count` worlds stand in a row.
+/// Number of worlds in a row, of `count` worlds.
 pub(super) fn columns(count: usize) -> usize {
     if count == 4 { 2 } else { count.min(3) }
 }

@@ -1,4 +1,4 @@
-//! Panel: how the scene is drawn, and pictures and films of it.
+//! Panel: the look of the scene, and saving pictures and films.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ use crate::film::{Animation, VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
 
-/// What grains can be coloured by, as the panel calls it.
+/// Choices of the colours of grains, with their names.
 const COLOURS: [(ColourBy, &str); 5] = [
     (ColourBy::PaperGreys, "paper greys"),
     (ColourBy::Speed, "speed"),
@@ -42,7 +42,7 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
     egui::Grid::new("see").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         ui.checkbox(&mut style.show_forces, "Force chains")
             .on_hover_text("A link a contact, as wide as |N|; blue pushes, orange pulls.");
-        ui.checkbox(&mut style.show_velocities, "Velocities").on_hover_text("An arrow a grain.");
+        ui.checkbox(&mut style.show_velocities, "Velocities").on_hover_text("An arrow per grain.");
         ui.end_row();
         ui.checkbox(&mut style.outlines, "Outlines").on_hover_text("A dark rim around each grain.");
         ui.checkbox(&mut style.angles, "Angles").on_hover_text("A mark that turns with its grain.");
@@ -51,10 +51,10 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
         ui.checkbox(&mut style.legend, "Legend").on_hover_text("What colours and links mean.");
         ui.end_row();
         ui.checkbox(&mut style.show_motions, "Motions").on_hover_text(
-            "Arrows on walls and fixed discs that move; with two heads, a force that drives them.",
+            "Arrows on walls and fixed discs that move. An arrow with two heads is a force that drives them.",
         );
         ui.checkbox(&mut preferences.gravity, "Gravity").on_hover_text(
-            "An arrow where gravity points; it shows by itself where that is not straight down.",
+            "An arrow in the direction of gravity. It is always shown if gravity does not point straight down.",
         );
         ui.end_row();
     });
@@ -69,7 +69,7 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
     });
 }
 
-/// What saves pictures and films.
+/// Shows the controls that save pictures and films.
 pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let label = ui.label("Picture").on_hover_text("Size of saved pictures, pixels.");
@@ -83,8 +83,7 @@ pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
         }
         ui.label(RichText::new("px").weak());
         let save = ui.button("Save PNG").on_hover_text(
-            "What is seen here, with all worlds that are compared (S). \
-            The file says which command makes it.",
+            "Saves the scene with all worlds as it is visible (S). The file contains the command that makes it.",
         );
         if save.clicked() {
             save_picture(ui.ctx(), context);
@@ -93,33 +92,33 @@ pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
     films(ui, context);
 }
 
-/// The record as a video or an animation.
+/// Shows the buttons that save the recording as a video or an animation.
 fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if let Some((format, work)) = &context.exports.film {
         let name = format.name();
-        let hint = format!("No {name} is left; what was computed stays in the window.");
+        let hint = format!("No {name} is saved; the computed run stays in the window.");
         return work.show(ui, &format!("Making a {name}"), &format!("Stop {name}"), &hint);
     }
     ui.horizontal(|ui| {
-        let hint = "Pictures in a second of a video or a GIF, which has at most 50.";
+        let hint = "Pictures per second of a video or a GIF. A GIF has at most 50.";
         let label = ui.label("Film").on_hover_text(hint);
         let [least, most] = VIDEO_RATES_HZ;
         let rate = egui::DragValue::new(&mut context.preferences.video_rate_hz).range(least..=most);
         ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
-        let pace = format!("at the pace of watching, {}×", context.preferences.speed);
+        let pace = format!("at the pace of the window, {}×", context.preferences.speed);
         ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
-        let video_hint = "What was recorded of all worlds, or the stretch that is named below, as MP4. The run may \
-            go on meanwhile.";
-        let gif_hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and \
-            larger files.";
+        let video_hint = "Saves the record of all worlds, or the interval that is chosen below, as MP4. The run \
+                          can continue meanwhile.";
+        let gif_hint = "Saves the same as a GIF, which all slides and web pages can show: 256 colours per picture, \
+                        and larger files.";
         let missing = check_ffmpeg("given").err();
         let formats = [
             (FilmFormat::Video, "Save video", missing, video_hint),
             (FilmFormat::Gif, "Save GIF", None, gif_hint),
         ];
-        // A page has no ffmpeg.
+        // A browser has no ffmpeg.
         for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IN_BROWSER)) {
             let save = ui.add_enabled(context.run.is_ready() && missing.is_none(), egui::Button::new(name));
             context.note_control(name, save.rect);
@@ -134,17 +133,17 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Where all files go that the window writes.
+/// Shows the field for the folder of all files.
 pub(super) fn folder(ui: &mut Ui, folder: &mut PathBuf) {
     ui.horizontal(|ui| {
         let whole = std::path::absolute(&*folder).unwrap_or_else(|_| folder.clone());
-        let hint = format!("Where saved files go: {}", whole.display());
+        let hint = format!("Folder of saved files: {}", whole.display());
         let label = ui.label("Folder").on_hover_text(hint);
         path_field(ui, folder, label.id);
     });
 }
 
-/// The field of a folder that is typed.
+/// Shows a field for a folder.
 pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
     let mut typed = folder.display().to_string();
     let edit = egui::TextEdit::singleline(&mut typed).desired_width(f32::INFINITY);
@@ -153,7 +152,7 @@ pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
     }
 }
 
-/// Saves the worlds as they are seen, in the size of the preferences.
+/// Saves the worlds as they are visible, in the size that the preferences give.
 pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) {
     if context.run.frame.worlds.is_empty() {
         return;
@@ -168,9 +167,9 @@ pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) 
     });
 }
 
-/// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
+/// Saves the recording of all worlds as a film, within the interval that data exports use.
 fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFormat) {
-    // Its scales are those of all its pictures.
+    // The range of the colour scale is that of all pictures of the film.
     let style = own_style(context.preferences, gui.theme() == egui::Theme::Dark);
     let (size, rate_hz) = (context.preferences.picture_size, context.preferences.video_rate_hz);
     let (size, rate_hz) = match format {
@@ -192,7 +191,7 @@ fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFo
     context.exports.film = Some((format, work));
 }
 
-/// What is seen of the worlds, of which there is one at least.
+/// Picture of the visible worlds; there is at least one.
 fn scene_picture(
     context: &PanelContext<'_>,
     style: Style,
@@ -210,7 +209,7 @@ fn scene_picture(
     };
     let camera = context.camera.for_picture(context.run.view(), &of_one, size_of_one, window);
     let worlds = context.run.frame.worlds.iter().enumerate().map(|(index, world)| {
-        // What came of a world, and below it what came of others.
+        // The note below a world: its slump, and below it the slump of other piles.
         let others = context.ensemble.said_in_short(&context.run.frame, index);
         let others = others.map_or(String::new(), |text| format!("\n{text}"));
         PicturedWorld {

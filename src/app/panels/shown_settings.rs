@@ -1,4 +1,4 @@
-//! Settings that the open scene has, and those of them whose sliders are always in view.
+//! The settings that the open scene uses, and those with a main slider.
 
 use glam::DVec2;
 
@@ -7,10 +7,10 @@ use crate::setting::{About, Group, Needs};
 use crate::sim::Settings;
 use crate::world::Parameters;
 
-/// The settings whose sliders are always in view.
+/// Names of the settings with a main slider.
 pub const FRONT_SETTINGS: [&str; 4] = ["bond", "dt", "rho", "mu"];
 
-/// The settings of the law and the time step that mean something to the scene and that the stepper reads.
+/// Settings of the law and the time step that have a meaning in the scene and that the stepper reads.
 pub(super) fn shown_settings(run: &WatchedRun, settings: &Settings) -> Vec<&'static About> {
     let Some(physics) = run.frame.start.as_ref().map(|start| start.physics()) else {
         return Vec::new();

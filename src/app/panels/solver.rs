@@ -1,4 +1,4 @@
-//! Panel: how each step is solved, and how well that went.
+//! Panel: the solver, and the result of the last step.
 
 use egui::{ComboBox, RichText, Ui};
 
@@ -39,6 +39,7 @@ pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
+/// Shows controls that few users need.
 fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
     let stepper = settings.stepper;
     if stepper.uses_method() {
@@ -55,13 +56,13 @@ fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_f
     }
 }
 
-/// The declaration of a setting of the solver.
+/// Declaration of a setting of the solver.
 fn about(name: &str) -> &'static About {
     let found = SolverSettings::ABOUT.iter().find(|about| about.name == name);
     found.unwrap_or(&SolverSettings::ABOUT[0])
 }
 
-/// How a step's problem is solved, and when that is done.
+/// Shows the solver, its stopping test and its tolerance.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         method_box(ui, &mut settings.solver);
@@ -86,10 +87,9 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     setting_control::show(ui, about("max-sweeps"), settings, start);
 }
 
-/// Shows the method, and all others to be chosen from; a model of friction that the chosen one does not take is left
-/// out.
+/// Shows the list of solvers. A friction model that the chosen solver does not take is replaced.
 fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
-    let label = ui.label("Method").on_hover_text("The solver that finds the impulses of a step.");
+    let label = ui.label("Solver").on_hover_text("The solver that finds the impulses of a step.");
     let mut method = solver.method;
     let list = ComboBox::from_id_salt("method").width(100.0).selected_text(method.name());
     let shown = list.show_ui(ui, |ui| {
@@ -104,7 +104,7 @@ fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
     }
 }
 
-/// What is asked of friction. A method that solves Coulomb's law alone leaves no choice.
+/// Shows the friction model. A solver of Coulomb friction only leaves no choice.
 fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     let method = settings.solver.method.info();
     let model = about("friction-model");
@@ -112,26 +112,23 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
         ui.horizontal(|ui| setting_control::show(ui, model, settings, start));
     })
     .response
-    .on_disabled_hover_text(format!("{} solves Coulomb's law alone.", method.name));
+    .on_disabled_hover_text(format!("{} solves only Coulomb friction.", method.name));
     if settings.solver.friction_model.is_taken_anew() {
         setting_control::show(ui, about("model-solves"), settings, start);
     }
 }
 
-/// Known remedies for known failures, those enabled that the stepper takes.
+/// Shows the remedies; those that the stepper does not take are disabled.
 fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     for (about, remedy) in Remedies::ABOUT.iter().zip(&REMEDIES) {
         let taken = remedy.taken_by.contains(&settings.stepper);
         ui.add_enabled_ui(taken, |ui| setting_control::show(ui, about, settings, start))
             .response
-            .on_disabled_hover_text(format!(
-                "Not with {}, which has its own ways.",
-                settings.stepper
-            ));
+            .on_disabled_hover_text(format!("The stepper {} does not take it.", settings.stepper));
     }
 }
 
-/// Care and speed, one click away.
+/// Shows the buttons of the solver presets.
 fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundings) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -143,8 +140,8 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
             }
         }
         let robust = ui.button("Robust").on_hover_text(
-            "Newton to 1e-8, overlap pushed out, shocks in sequence, no bounce below 2 g Δt, fast grains \
-             in pieces of a step: hard scenes hold, and the paper's effects of Δt go.",
+            "Newton to 1e-8. Overlap is pushed out, shocks are solved in sequence, nothing bounces below 2 g Δt, \
+             and fast grains move in parts of a step. Hard scenes hold, and the paper's effects of Δt disappear.",
         );
         if robust.clicked() {
             Preset::Robust.apply_to_settings(settings);
@@ -152,20 +149,20 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
     });
 }
 
-/// The common residual, and that of the model of friction where there is one.
+/// Common residual and, if the last step used another friction model, its residual, with a hint.
 fn residuals(last: &Observables) -> (String, &'static str) {
     let common = format!("{:.1e}", last.residual);
     match last.model_residual.filter(|_| last.is_of_a_model()) {
         None => (common, "Common residual of the last step."),
         Some(of_model) => (
             format!("{common} ({of_model:.1e})"),
-            "Common residual of the last step, by Coulomb's law; in brackets that of the model of friction that \
-             was solved.",
+            "Common residual of the last step under Coulomb friction; in brackets, the residual of the friction \
+             model that was solved.",
         ),
     }
 }
 
-/// What the last step needed.
+/// Shows measures of the last step.
 fn readings(ui: &mut Ui, run: &WatchedRun) {
     let Some(world) = run.world() else { return };
     let (last, settings) = (&world.snapshot.observables, &world.controls.settings);
@@ -180,11 +177,11 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
         ui.end_row();
         if settings.solver.method == Method::Auto {
             let taken = world.picked_method.name();
-            reading(ui, "method", taken.to_owned(), "What auto took for the last step.");
+            reading(ui, "solver", taken.to_owned(), "The solver that auto chose for the last step.");
             ui.end_row();
         }
         reading(ui, "contacts", last.contacts.to_string(), "Contacts of the last step.");
-        reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Mean time of a step, lately.");
+        reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Recent mean time per step.");
         ui.end_row();
         if settings.stepper.reads("substeps") {
             let substeps = world.substeps.to_string();
@@ -194,8 +191,8 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
             ui.end_row();
         }
         if let Some(critical_secs) = world.critical_time_step_secs {
-            let hint = "Substeps up to this length are surely stable; a little longer, and \
-                        crowded grains blow up.";
+            let hint = "Longest substep that is certainly stable. With slightly longer substeps crowded grains \
+                        blow up.";
             reading(ui, "critical", millis_text(critical_secs), hint);
             ui.end_row();
         }
@@ -207,13 +204,13 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
     }
 }
 
-/// About how far velocities are off, rounded up.
+/// Text on the estimated velocity error of a step, rounded up.
 fn within(last: &Observables) -> String {
     let rounded_up = (1e5 * last.velocity_error).ceil().max(1.0) / 100.0;
-    format!("velocities off by some {} mm/s", compact(rounded_up))
+    format!("velocity error about {} mm/s", compact(rounded_up))
 }
 
-/// How the last step was solved; the status bar counts those that were not solved as asked.
+/// Shows whether the last step was solved. The status bar counts the steps that were not.
 fn solved(ui: &mut Ui, world: &WorldFrame) {
     let last = &world.snapshot.observables;
     let dark = ui.visuals().dark_mode;
@@ -223,7 +220,7 @@ fn solved(ui: &mut Ui, world: &WorldFrame) {
     } else if last.converged {
         (mark, colour) = (format!("● converged, {}", within(last)), theme::good(dark));
     } else if last.stalled {
-        mark += &format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual);
+        mark += &format!("▲ stalled: residual {:.0e}, more sweeps do not help", last.residual);
     } else {
         mark += &format!("▲ not converged within {} sweeps, {}", last.sweeps, within(last));
     }

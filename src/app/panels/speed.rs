@@ -1,5 +1,5 @@
-//! Panel: where the time of the next steps goes, and how long methods take to solve the step that is shown how well. Each
-//! solves it to one tolerance after the other, on a thread of its own.
+//! Panel: the time that parts of a step take, and a comparison of all solvers on the visible step. Each solver solves
+//! the step to one tolerance after another, on a thread of its own.
 
 use std::sync::OnceLock;
 
@@ -20,41 +20,41 @@ use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
 /// Tolerances of the residual, from loose to tight.
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// A method that takes longer for a step, s, has no tighter one.
+/// Time limit, s. A solver that takes longer for a step is not asked for tighter tolerances.
 const LIMIT_SECS: f64 = 0.25;
-/// Times a step is taken, of which the shortest counts.
+/// Number of repeats of a step. The shortest time counts.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
-/// Steps whose times are added up, at most, and how long that may take, s.
+/// Largest number of steps whose times are added, and time limit for them, s.
 const TIMED_STEPS: u32 = 50;
 const TIMED_SECS: f64 = 1.0;
 
-/// What a method came to.
+/// Result of one solver.
 struct RaceCurve {
     method: &'static str,
     /// Time of the step (ms) and its residual, from loose to tight.
     points: Vec<[f64; 2]>,
 }
 
-/// A race on one step.
+/// A comparison of solvers on one step.
 pub(super) struct StepRace {
-    /// The step that they solve: simulated time, s.
+    /// Simulated time of the step, s.
     time_secs: f64,
-    /// What was measured, once all of it is.
+    /// Results, once all solvers are finished.
     measured: Measured,
     work: Option<Work<Measured>>,
 }
 
-/// What was measured of the steps that follow a moment.
+/// Measured times of the steps after a moment.
 #[derive(Default)]
 struct Measured {
-    /// What so many of them took.
+    /// Number of measured steps and the sum of their times.
     times: Option<(u32, StepTimes)>,
-    /// What methods came to; none of a stepper that has no method.
+    /// Results of the solvers. Empty for a stepper without a solver.
     curves: Vec<RaceCurve>,
 }
 
-/// Has all methods solve the step that follows the moment of a run, where it was not given up before that came.
+/// Measures all solvers on the step after the visible moment. `run` is `None` if the user cancelled before it arrived.
 fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     let Some(run) = run else { return Ok(Measured::default()) };
     let simulation = &run.world.simulation;
@@ -67,7 +67,7 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
         for tolerance in TOLERANCES {
             let point = timed(simulation, info.method, tolerance, goes_on);
             let Some([ms, residual]) = point else { break };
-            // A method that comes no further has nothing more to show.
+            // A point that does not reduce the residual shows nothing new.
             if points.last().is_none_or(|&[_, before]| residual < before) {
                 points.push([ms, residual]);
             }
@@ -85,7 +85,7 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     Ok(Measured { times, curves })
 }
 
-/// What the next steps take, as they are set; nothing where none can be taken.
+/// Number of the next steps and the sum of their times, with the present settings. `None` if the run cannot continue.
 fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     let (mut steps, mut sum) = (0, StepTimes::default());
     while steps < TIMED_STEPS && sum.total_secs < TIMED_SECS {
@@ -98,13 +98,13 @@ fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     (steps > 0 && sum.total_secs > 0.0).then_some((steps, sum))
 }
 
-/// s since it was first asked.
+/// Time since the first call, s.
 fn now_secs() -> f64 {
     static BEGUN: OnceLock<Instant> = OnceLock::new();
     BEGUN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Says where the time went.
+/// Text on the times of a step.
 fn told(&(steps, times): &(u32, StepTimes)) -> String {
     let part = |secs: f64| 100.0 * secs / times.total_secs;
     let (contacts, solving) = (part(times.detection_secs), part(times.solving_secs));
@@ -116,7 +116,7 @@ fn told(&(steps, times): &(u32, StepTimes)) -> String {
     )
 }
 
-/// The least time of the step, ms, and its residual; nothing where it cannot be taken so.
+/// Shortest time of the step, ms, and its residual. `None` if the solver cannot take the step.
 fn timed(
     simulation: &Simulation,
     method: Method,
@@ -150,7 +150,7 @@ fn timed(
 
 /// Height of the plot, points.
 const HEIGHT: f32 = 230.0;
-/// Colours before dashes tell curves apart.
+/// Number of colours. Further curves repeat them with other line styles.
 const COLOURS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
@@ -160,7 +160,9 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
         race.measured = outcome.unwrap_or_default();
     }
     match race.as_ref().and_then(|race| race.work.as_ref()) {
-        Some(work) => work.show(ui, "Measuring", "Stop measuring", "Other methods are left out."),
+        Some(work) => {
+            work.show(ui, "Measuring", "Stop measuring", "Leaves out the remaining solvers.")
+        }
         None => measure(ui, run, race),
     }
     let Some(race) = race.as_ref().filter(|race| race.work.is_none()) else { return };
@@ -175,20 +177,20 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     legend(ui, curves);
     let time_secs = race.time_secs;
     let text = format!(
-        "The step that follows t = {}, measured here; ◆ is the present method.",
+        "The step after t = {}, measured here; ◆ is the present solver.",
         clock_text(time_secs)
     );
     ui.label(RichText::new(text).small().weak());
 }
 
-/// The button that measures the step that is shown.
+/// Shows the button that measures the visible step.
 fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     let goes_on = |world: &&WorldFrame| world.failure.is_none();
     let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
     let button = ui.add_enabled(time_secs.is_some(), egui::Button::new("Measure this step"));
-    let hint = "Where the time of a step goes; then each method solves the step that is shown, to one tolerance after the \
-                other: some seconds.";
-    let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot go on.");
+    let hint = "Measures the parts of a step. Then each solver solves the visible step, to one tolerance after the \
+                other. This takes some seconds.";
+    let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot continue.");
     if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
         let taken = run.take(run.selected);
         let work = Work::start(ui.ctx(), vec![taken], move |mut runs, reporter| {
@@ -199,7 +201,7 @@ fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     }
 }
 
-/// Where the present method is on the chart of its own step: the run's own mean time, once it is at that step.
+/// Place of the present solver on the chart: the run's own mean time, while it is at that step.
 fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
     let world = run.world()?;
     let row = &world.snapshot.observables;
@@ -210,7 +212,7 @@ fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
 
 fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
     let dark = ui.visuals().dark_mode;
-    ui.label(RichText::new("residual against ms a step").small());
+    ui.label(RichText::new("residual against ms per step").small());
     let ends = [0, 1].map(|axis| {
         let points = curves.iter().flat_map(|curve| &curve.points);
         with_room(points.map(|point| point[axis].log10()).chain(now.map(|now| now[axis])), true)
@@ -233,7 +235,7 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
         });
 }
 
-/// Colour and stroke of a curve, which no other one has, and the sign of the stroke.
+/// Colour and line style of a curve, different for all curves, and a sign for the line style.
 fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     let (style, sign) = match index / COLOURS {
         0 => (LineStyle::Solid, "━"),
@@ -243,7 +245,7 @@ fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     (theme::world_colour(index % COLOURS, dark), style, sign)
 }
 
-/// What colours and strokes mean, below the chart, of which it hides nothing.
+/// Shows the key of colours and line styles below the chart, where it hides nothing.
 fn legend(ui: &mut Ui, curves: &[RaceCurve]) {
     let dark = ui.visuals().dark_mode;
     ui.horizontal_wrapped(|ui| {
@@ -265,7 +267,7 @@ mod tests {
     #[test]
     fn tighter_tolerances_come_to_smaller_residuals() {
         let mut scene = built_in("pile").unwrap();
-        // So that the step has a solution.
+        // With this threshold the step has a solution.
         scene.parameters.restitution_threshold = 2.0;
         let mut simulation = scene.simulation().unwrap();
         simulation.take_steps(20).unwrap();

@@ -1,4 +1,4 @@
-//! The status bar: how fast, whether to trust it, what went wrong, and the ways to everything else.
+//! The status bar: speed, trust, warnings, and buttons for pages and help.
 
 use egui::{Align, Label, Layout, Rect, RichText, Ui};
 
@@ -29,7 +29,7 @@ pub(super) fn show(
     });
 }
 
-/// The ways to the pages and to the keys, from the right.
+/// Shows the buttons for pages and help, from right to left.
 fn ways(ui: &mut Ui, context: &mut PanelContext<'_>, help: &mut bool) {
     ui.toggle_value(help, "Help").on_hover_text("All keys (H)");
     let page = context.preferences.page;
@@ -50,21 +50,21 @@ fn ways(ui: &mut Ui, context: &mut PanelContext<'_>, help: &mut bool) {
     }
 }
 
-/// How fast time passes, while it does.
+/// Shows the speed while time passes.
 fn pace(ui: &mut Ui, frame: &LiveFrame) {
     if frame.seeking {
         ui.label(RichText::new("computing that moment").weak());
     } else if frame.stored && frame.playing {
         ui.label(RichText::new("stored").weak())
-            .on_hover_text("What is recorded is shown as it was; nothing is computed.");
+            .on_hover_text("The record is shown; nothing is computed.");
     } else if frame.playing && frame.steps_per_sec > 0.0 {
         let text = format!("{:.0} steps/s, {:.2}×", frame.steps_per_sec, frame.real_time_factor);
         ui.label(RichText::new(text).weak())
-            .on_hover_text("Steps of all worlds together, and simulated time per time on the wall");
+            .on_hover_text("Steps of all worlds together, and simulated time per wall-clock time");
     }
 }
 
-/// What was just done, or what went wrong. In a lesson that shows what goes wrong, nothing does.
+/// Shows the last action or failure. A lesson about failures shows no alarms.
 fn messages(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if let Some((notice, left_secs)) =
         context.notice.as_ref().and_then(|it| Some((it, it.left_secs()?)))
@@ -83,8 +83,8 @@ fn messages(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Shows a line in the room that is left, and all of it to whoever points at it.
+/// Shows a line in the remaining space. Hovering shows the whole text.
 fn message(ui: &mut Ui, text: &str, colour: egui::Color32) -> Rect {
-    // A label that is cut shows the whole by itself.
+    // A truncated label shows its whole text by itself.
     ui.add(Label::new(RichText::new(text).color(colour)).truncate()).rect
 }

@@ -1,4 +1,4 @@
-//! Panel: the grains and the contacts of the moment that is shown as a table, filtered and sorted. A click on a row pins
+//! Panel: grains and contacts of the visible moment as a table that can be filtered and sorted. A click on a row pins
 //! its grain.
 
 use egui::{RichText, ScrollArea, TextEdit, Ui};
@@ -8,52 +8,52 @@ use crate::app::theme;
 use crate::app::watched_run::{GrainRef, WatchedRun};
 use crate::sim::{ContactView, GrainView, Snapshot};
 
-/// Height of the rows that are seen, points.
+/// Height of the visible rows, points.
 const HEIGHT: f32 = 240.0;
 /// Font of the rows, points.
 const FONT: f32 = 10.5;
 
-/// What is asked of the table.
+/// State of the table.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BodyTable {
-    /// True if it has contacts; else it has grains.
+    /// True for contacts, false for grains.
     contacts: bool,
-    /// What a row has to fulfil.
+    /// Filter as typed.
     filter: String,
-    /// The column that rows are sorted by, and whether its largest come first.
+    /// Index of the sorted column, and true for descending order.
     sort: Option<(usize, bool)>,
 }
 
-/// A column of rows that are made of `T`.
+/// A column of a table whose rows are `T`.
 struct ShownColumn<T> {
     name: &'static str,
-    /// Characters.
+    /// Width in characters.
     width: usize,
-    /// True if numbers are whole.
+    /// True for whole numbers.
     whole: bool,
     hint: &'static str,
-    /// Of one of the snapshot's with its number, in units of d where lengths are meant.
+    /// Value of a row, from its index and the mean diameter d. Lengths are in units of d.
     value: fn(usize, &T, f64) -> f64,
 }
 
 const GRAINS: [ShownColumn<GrainView>; 7] = [
-    column("grain", 5, true, "Its number.", |index, _, _| index as f64),
+    column("grain", 5, true, "Number of the grain.", |index, _, _| index as f64),
     column("x", 8, false, "x over d.", |_, grain, d| grain.position.x / d),
     column("y", 8, false, "y over d.", |_, grain, d| grain.position.y / d),
-    column("speed", 8, false, "Of its centre, m/s; 0 where it rests.", |_, grain, _| {
+    column("speed", 8, false, "Speed of the centre, m/s; 0 at rest.", |_, grain, _| {
         unless_at_rest(grain.velocity.length())
     }),
-    column("overlap", 8, false, "The deepest, over d.", |_, grain, d| grain.overlap / d),
+    column("overlap", 8, false, "Deepest overlap over d.", |_, grain, d| grain.overlap / d),
     column("force", 8, false, "Σ|N| over its contacts, N.", |_, grain, _| grain.force),
-    column("n", 2, true, "Its contacts.", |_, grain, _| f64::from(grain.coordination)),
+    column("n", 2, true, "Number of contacts.", |_, grain, _| f64::from(grain.coordination)),
 ];
 
-/// What stands for the number of what is fixed.
+/// Number that stands for a fixed body.
 const FIXED: f64 = -1.0;
 
 const CONTACTS: [ShownColumn<ContactView>; 7] = [
-    column("grain", 5, true, "Its first grain.", |_, contact, _| f64::from(contact.grain)),
-    column("with", 5, true, "Its second grain; -1 is what is fixed.", |_, contact, _| {
+    column("grain", 5, true, "First grain.", |_, contact, _| f64::from(contact.grain)),
+    column("with", 5, true, "Second grain; -1 is a fixed body.", |_, contact, _| {
         contact.other_grain.map_or(FIXED, f64::from)
     }),
     column("N", 8, false, "Normal force, N; negative pulls.", |_, contact, _| contact.normal_force),
@@ -86,7 +86,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, table: &mut BodyTable) {
         }
         let hint = if table.contacts { "N < 0 and y > 2" } else { "force > 0.01 and y > 2" };
         let label = ui.label("Filter").on_hover_text(
-            "Comparisons of columns with numbers, joined by and. Columns and their units are told by their heads.",
+            "Comparisons of columns with numbers, joined by and. Point at the head of a column to see its meaning \
+             and unit.",
         );
         let field = TextEdit::singleline(&mut table.filter).hint_text(hint);
         ui.add(field.desired_width(f32::INFINITY)).labelled_by(label.id);
@@ -110,7 +111,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, table: &mut BodyTable) {
     }
 }
 
-/// Shows heads and rows, and gives the number of one that is clicked.
+/// Shows head and rows. Returns the index of the row that was clicked.
 fn rows<T>(
     ui: &mut Ui,
     table: &mut BodyTable,
@@ -169,7 +170,7 @@ fn rows<T>(
     clicked
 }
 
-/// A number in the width of its column.
+/// Formats a number in the width of its column.
 fn written<T>(value: f64, column: &ShownColumn<T>) -> String {
     if column.whole {
         return format!("{value}");
@@ -179,7 +180,7 @@ fn written<T>(value: f64, column: &ShownColumn<T>) -> String {
     if fits { format!("{value:.decimals$}") } else { format!("{value:.1e}") }
 }
 
-/// The numbers of the rows that pass the filter, as they are sorted.
+/// Indices of the rows that pass the filter, in the order of the sorted column.
 fn chosen<T>(
     table: &BodyTable,
     all: &[T],
@@ -199,14 +200,14 @@ fn chosen<T>(
     Ok(chosen)
 }
 
-/// A column against a number.
+/// A comparison of a column with a number.
 struct Comparison {
     column: usize,
     sign: &'static str,
     number: f64,
 }
 
-/// Longer ones first: "<=" begins as "<" does.
+/// Longer signs first, because "<=" begins with "<".
 const SIGNS: [&str; 5] = ["<=", ">=", "<", ">", "="];
 
 impl Comparison {
@@ -221,7 +222,7 @@ impl Comparison {
     }
 }
 
-/// Comparisons joined by "and".
+/// Reads comparisons joined by "and".
 fn read_filter<T>(text: &str, columns: &[ShownColumn<T>]) -> Result<Vec<Comparison>, String> {
     let parts = text.split(" and ").map(str::trim).filter(|part| !part.is_empty());
     let read = |part: &str| -> Option<Comparison> {
@@ -235,7 +236,7 @@ fn read_filter<T>(text: &str, columns: &[ShownColumn<T>]) -> Result<Vec<Comparis
             read(part).ok_or_else(|| {
                 let names: Vec<_> = columns.iter().map(|column| column.name).collect();
                 format!(
-                    "“{part}” is no comparison of {} with a number, by <, <=, =, >= or >.",
+                    "“{part}” is not a comparison of {} with a number by <, <=, =, >= or >.",
                     names.join(", ")
                 )
             })

@@ -9,10 +9,10 @@ use super::keeping::replace_file;
 use crate::app::state::AppState;
 use crate::app::told::told;
 
-/// Least time between two files.
+/// Least time between two writes.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Writes the file, not too often.
+/// Writes the file, at most once per interval.
 pub(super) struct StateFile {
     path: PathBuf,
     written: Option<Instant>,

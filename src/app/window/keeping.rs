@@ -1,7 +1,7 @@
-//! The file that keeps what the window remembers between starts.
+//! The file in which the window stores its preferences between starts.
 //!
-//! A file that cannot be read, be it of another version, counts as none: nobody should have to
-//! repair it. What cannot be written is not kept, and nothing else is lost.
+//! A file that cannot be read, for example from another version, is ignored, so that nobody has to repair it. If the
+//! file cannot be written, only the preferences are lost.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -9,28 +9,28 @@ use std::time::{Duration, Instant};
 use crate::app::preferences::{Preferences, StoredWindow};
 use crate::app::user_folder::user_folder;
 
-/// Where the file lies: in the user's configuration folder.
+/// Path of the file, in the user's configuration folder.
 fn path() -> Option<PathBuf> {
     Some(user_folder("XDG_CONFIG_HOME", ".config")?.join("window.ron"))
 }
 
-/// Reads what was kept.
+/// Reads the stored preferences and layout.
 pub(super) fn load() -> StoredWindow {
     let text = path().and_then(|path| std::fs::read_to_string(path).ok());
     text.and_then(|text| ron::from_str(&text).ok()).unwrap_or_default()
 }
 
-/// Forgets what was kept.
+/// Deletes the file.
 pub(super) fn forget() {
     if let Some(path) = path() {
         let _ = std::fs::remove_file(path);
     }
 }
 
-/// Least time between two looks at what has changed: a window that is killed loses no more than that.
+/// Time between two checks for changes. A window that is killed loses at most the changes of this time.
 const INTERVAL: Duration = Duration::from_secs(2);
 
-/// Keeps what changes while the window is open.
+/// Stores changed preferences while the window is open.
 pub(super) struct Keeper {
     looked: Instant,
     kept: Preferences,
@@ -38,12 +38,13 @@ pub(super) struct Keeper {
 }
 
 impl Keeper {
-    /// With what was loaded.
+    /// `kept` are the preferences that were loaded.
     pub(super) fn new(kept: Preferences) -> Self {
         Self { looked: Instant::now(), kept, text: String::new() }
     }
 
-    /// Keeps what has changed, if it is time to look. Otherwise, where something has, how long until then.
+    /// Stores the preferences if a check is due. If they have changed but no check is due, returns the time until the
+    /// next.
     pub(super) fn look(
         &mut self,
         preferences: &Preferences,
@@ -57,7 +58,7 @@ impl Keeper {
         None
     }
 
-    /// Keeps what has changed.
+    /// Stores the preferences now, if the text of the file changes.
     pub(super) fn keep(&mut self, preferences: &Preferences, context: &egui::Context) {
         self.looked = Instant::now();
         self.kept.clone_from(preferences);
@@ -71,7 +72,8 @@ impl Keeper {
     }
 }
 
-/// Writes a file beside and moves it, so that a crash leaves the old one or the new one, and a reader sees a whole one.
+/// Writes a new file and renames it over the old one: after a crash there is the old or the new file, and readers see
+/// a whole file.
 pub(super) fn replace_file(path: &Path, text: &str) {
     let fresh = path.with_extension("new");
     if std::fs::write(&fresh, text).is_ok() {

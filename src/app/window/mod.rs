@@ -28,19 +28,19 @@ pub(crate) use start::WindowOptions;
 use start::{attributes, first, no_display};
 use surface::{Drawn, WindowSurface};
 
-/// Least time between two frames that only the run asks for. A software rasteriser takes processor
-/// time that the solver needs; the eye follows a pile at 25 frames a second.
+/// Least time between two frames that only the run asks for.
 pub(crate) const FRAME_INTERVAL: Duration = Duration::from_millis(16);
-/// The same, where the processor draws.
+/// Least time between two frames if the processor draws. More than 25 frames per second hardly look smoother, and
+/// drawing takes processor time from the solver.
 pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
-/// A device that is lost this many times in a row does not come back.
+/// Number of device losses in a row after which the window gives up.
 const MOST_LOSSES: u32 = 3;
 
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// Says what is missing where there is no display or no graphics driver, and which package brings
-/// it; otherwise what the system reports.
+/// If there is no display or no graphics driver; the message names the package that provides it. Otherwise passes on
+/// the system's error.
 pub(crate) fn run(
     config: &Config,
     pictures: &HeadlessOptions,
@@ -53,12 +53,12 @@ pub(crate) fn run(
     stored.preferences.follow(pictures)?;
     let restart = pictures.restart.as_deref();
     let open_first = first(config, restart, options, &stored.preferences)?;
-    // Other threads send an event where there is a new frame of the run, or a file was written.
+    // Other threads send an event when there is a new frame or a file was written.
     let events = EventLoop::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
     let wake = proxy.clone();
     let live = Live::spawn(LiveOptions {
-        // The loop is gone only when the window is.
+        // Sending fails only after the loop has ended.
         wake: Box::new(move || {
             let _ = wake.send_event(());
         }),
@@ -84,7 +84,7 @@ pub(crate) fn run(
     app.failure.map_or(Ok(()), Err)
 }
 
-/// A context with the project's look, which wakes the loop when another thread asks for a frame.
+/// A context in the window's style. It wakes the event loop when another thread asks for a frame.
 fn context(proxy: &EventLoopProxy<()>, layout: egui::Memory) -> egui::Context {
     let context = egui::Context::default();
     context.memory_mut(|memory| *memory = layout);
@@ -92,7 +92,7 @@ fn context(proxy: &EventLoopProxy<()>, layout: egui::Memory) -> egui::Context {
     let wake = proxy.clone();
     let window_thread = std::thread::current().id();
     context.set_request_repaint_callback(move |info| {
-        // Requests of the window's own thread come back as the delay of its pass.
+        // A repaint that the window's own thread requests comes back as the delay of its pass.
         if info.delay.is_zero() && std::thread::current().id() != window_thread {
             let _ = wake.send_event(());
         }
@@ -115,7 +115,7 @@ struct App {
     keeper: Keeper,
 }
 
-/// What exists while the window does.
+/// Resources that exist as long as the window.
 struct Open {
     window: Arc<Window>,
     input: egui_winit::State,
@@ -132,7 +132,7 @@ impl App {
         Ok(())
     }
 
-    /// Shows what the surface of a device draws.
+    /// Shows a window on the surface of a graphics device.
     fn show(&mut self, window: Arc<Window>, surface: WindowSurface) {
         let input = egui_winit::State::new(
             self.context.clone(),
@@ -152,16 +152,16 @@ impl App {
         events.exit();
     }
 
-    /// Opens the graphics device again after it was lost. The old surface goes first: two surfaces
-    /// of one window exclude each other. A new context sends all textures again; the old one's
-    /// memory keeps the layout.
+    /// Opens the graphics device again after it was lost. The old surface is dropped first, because a window can have
+    /// only one. The new context sends all textures again; the layout is taken from the old one.
     fn recover(&mut self, events: &ActiveEventLoop) {
         let Some(Open { window, input, surface }) = self.open.take() else { return };
         drop(surface);
         drop(input);
         self.losses += 1;
         if self.losses > MOST_LOSSES {
-            let message = "the graphics device was lost again and again; --headless still works";
+            let message =
+                "the graphics device was lost several times in a row; --headless still works";
             self.fail(events, Error::Renderer(message.into()));
             return;
         }
@@ -172,7 +172,8 @@ impl App {
         match WindowSurface::new(events, &window, self.renderer) {
             Ok(surface) => {
                 self.show(window, surface);
-                self.state.warn("The graphics device was lost and opened anew; the run went on.");
+                self.state
+                    .warn("The graphics device was lost and opened again; the run continued.");
             }
             Err(error) => self.fail(events, error),
         }
@@ -276,7 +277,7 @@ impl ApplicationHandler<()> for App {
 
     fn exiting(&mut self, _events: &ActiveEventLoop) {
         self.keeper.keep(&self.state.preferences, &self.context);
-        // The surface goes while its window and display still exist.
+        // The surface must be dropped while its window and display still exist.
         self.open = None;
     }
 }

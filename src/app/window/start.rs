@@ -1,4 +1,4 @@
-//! What has to be settled before a window opens.
+//! Choices made before a window opens: its contents and its size.
 
 use std::path::{Path, PathBuf};
 
@@ -36,15 +36,15 @@ pub(crate) struct WindowOptions {
 const SIZE: [f64; 2] = [1280.0, 800.0];
 const LEAST_SIZE: [f64; 2] = [640.0, 480.0];
 
-/// Opens what a window begins with.
+/// Loads the first contents of a window.
 pub(super) type Opener = Box<dyn FnOnce(&mut AppState)>;
 
-/// What the command line asks for; else the lessons, until they are left, or the last scene, or the default one
-/// where that is gone.
+/// Chooses the first contents of a window: a session, link, saved run or scene of the command line; otherwise the
+/// lessons, until the user leaves them; then the last scene, or the default scene if the last no longer exists.
 ///
 /// # Errors
-/// Names the first field of the command line or the saved run that is outside its range, or the file that
-/// cannot be read.
+/// Names the first field of the command line or the saved run that is outside its range, or the file that cannot be
+/// read.
 pub(super) fn first(
     asked: &Config,
     restart: Option<&Path>,
@@ -53,7 +53,7 @@ pub(super) fn first(
 ) -> Result<Opener> {
     if (options.session.is_some() || options.open.is_some()) && !asked.is_empty() {
         let field = if options.session.is_some() { "session" } else { "open" };
-        let allowed = "left out where a scene or a setting is given: it has its own";
+        let allowed = "left out if a scene or a setting is given, because it has its own";
         return Err(Error::value(field, "given", allowed));
     }
     if let Some(path) = &options.session {
@@ -74,8 +74,7 @@ pub(super) fn first(
         let at = preferences.lesson.at;
         return Ok(Box::new(move |state| state.visit(at)));
     }
-    // A pile is made on the solver's thread; everything else of a scene is checked before a window
-    // opens.
+    // A pile is made on the solver thread; the rest of a scene is checked before a window opens.
     let config = if !asked.is_empty() {
         asked.without_settling()?;
         asked.clone()
@@ -87,7 +86,7 @@ pub(super) fn first(
     Ok(Box::new(move |state| state.load(config)))
 }
 
-/// What a window is like, of that size (points) if it has been open before, and no larger than the screen.
+/// Attributes of a new window. Its size is that of the last window (points) if there was one, limited to the screen.
 pub(super) fn attributes(
     events: &ActiveEventLoop,
     window_points: Option<[f64; 2]>,
@@ -95,7 +94,7 @@ pub(super) fn attributes(
     let [width, height] = window_points.unwrap_or(SIZE);
     let on_screen = |monitor: MonitorHandle| monitor.size().to_logical(monitor.scale_factor());
     let screen: Option<LogicalSize<f64>> = events.primary_monitor().map(on_screen);
-    // A driver may know of no screen, or of one without a size.
+    // A driver may report no screen, or one without a size.
     let screen = screen.filter(|screen| screen.width > 0.0 && screen.height > 0.0);
     let most = screen.unwrap_or(LogicalSize::new(f64::INFINITY, f64::INFINITY));
     Window::default_attributes()
@@ -104,10 +103,10 @@ pub(super) fn attributes(
         .with_min_inner_size(LogicalSize::new(LEAST_SIZE[0], LEAST_SIZE[1]))
 }
 
-/// What is missing where no window can be opened, and what brings it.
+/// Error for a missing display: the cause and the packages that provide one.
 pub(super) fn no_display(error: &dyn std::fmt::Display) -> Error {
     let message = error.to_string();
-    // winit puts the places in its own source in front.
+    // winit puts positions in its own source code in front.
     let reason = message.rsplit(": ").next().unwrap_or(&message).trim_end_matches('.');
     Error::Renderer(format!(
         "no window can be opened ({reason}): start Slump on a desktop, or install the Debian \

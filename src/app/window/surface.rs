@@ -1,4 +1,4 @@
-//! The window's surface on a graphics device, and what to do when either is lost.
+//! The window's surface on a graphics device, and the recovery when either is lost.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,15 +12,15 @@ use crate::app::canvas::Screen;
 use crate::error::{Error, Result};
 use crate::render::RendererChoice;
 
-/// Textures of fonts are up to this large, pixels a side; every driver allows it.
+/// Largest side of font textures, pixels. Every driver allows it.
 const LARGEST_SIDE_NEEDED: u32 = 2048;
 
-/// What became of a frame.
+/// Result of drawing a frame.
 pub(super) enum Drawn {
     Shown,
-    /// The surface had changed; the frame is to be drawn again.
+    /// The surface has changed; the frame must be drawn again.
     Again,
-    /// Nobody can see the window.
+    /// The window is not visible.
     Hidden,
     /// The device is lost.
     Lost,
@@ -41,16 +41,16 @@ pub(super) struct WindowSurface {
 }
 
 impl WindowSurface {
-    /// Opens the strongest device that can draw on the window: on Vulkan, or else on what the system
-    /// has, or else on OpenGL; or on the one that is asked for.
+    /// Opens the most powerful device that can draw in the window, by Vulkan, then by the system's own interface, then
+    /// by OpenGL; or by the requested one.
     pub(super) fn new(
         events: &ActiveEventLoop,
         window: &Arc<Window>,
         renderer: RendererChoice,
     ) -> Result<Self> {
-        // Each kind is tried by itself: a driver that is there but cannot draw on this display
-        // must not keep the other from being found. `WGPU_BACKEND` overrides the choice. Under Wine, Direct3D 12 opens and
-        // then draws nothing, so it comes after Vulkan.
+        // Each backend is tried alone: a driver that exists but cannot draw on this display must not hide another.
+        // `WGPU_BACKEND` overrides the choice. Under Wine, Direct3D 12 opens and then draws nothing, so it comes after
+        // Vulkan.
         let of_system = wgpu::Backends::PRIMARY;
         let first = match renderer {
             RendererChoice::Auto => wgpu::Backends::from_env().unwrap_or(wgpu::Backends::VULKAN),
@@ -101,7 +101,7 @@ impl WindowSurface {
         let lost = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, _| seen.store(true, Ordering::Relaxed));
-        // An error that no call reports leaves the picture as it is; it must not end the program.
+        // An error that no call reports leaves the picture unchanged; it must not end the program.
         device.on_uncaptured_error(Arc::new(|_| {}));
 
         let size = window.inner_size();
@@ -131,12 +131,12 @@ impl WindowSurface {
         self.software
     }
 
-    /// Largest side of a texture, pixels.
+    /// Largest side of a texture on this device, pixels.
     pub(super) fn largest_side(&self) -> usize {
         self.screen.device.limits().max_texture_dimension_2d.max(LARGEST_SIDE_NEEDED) as usize
     }
 
-    /// Follows the window's size, pixels.
+    /// Adapts the surface to the window's size, pixels.
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let largest = self.screen.device.limits().max_texture_dimension_2d;
         let [width, height] = [size.width, size.height].map(|side| side.clamp(1, largest));
@@ -150,15 +150,15 @@ impl WindowSurface {
         self.surface.configure(&self.screen.device, &self.configuration);
     }
 
-    /// Gives the device up, as if the driver had.
+    /// Destroys the device, as a fault of the driver would.
     pub(super) fn destroy_device(&self) {
         self.screen.device.destroy();
     }
 
-    /// Draws what a pass of egui put out.
+    /// Draws egui's output.
     pub(super) fn draw(&mut self, context: &egui::Context, output: egui::FullOutput) -> Drawn {
         self.textures.append(output.textures_delta);
-        // Callbacks of the device, including the one that reports its loss, run in here.
+        // `poll` runs callbacks of the device, including the one that reports its loss.
         let polled = self.screen.device.poll(wgpu::PollType::Poll);
         if polled.is_err() || self.lost.load(Ordering::Relaxed) {
             self.textures.clear();
@@ -191,7 +191,7 @@ impl WindowSurface {
         Drawn::Shown
     }
 
-    /// A new surface on the same device.
+    /// Makes a new surface on the same device.
     fn replace_surface(&mut self) -> Drawn {
         match self.instance.create_surface(Arc::clone(&self.window)) {
             Ok(surface) => {
@@ -204,7 +204,7 @@ impl WindowSurface {
     }
 }
 
-/// A format that stores the numbers it is given: colours are blended as files store them.
+/// A format without conversion to sRGB: colours are blended as they are stored in files.
 fn plain_format(formats: &[wgpu::TextureFormat]) -> Option<wgpu::TextureFormat> {
     let plain = [wgpu::TextureFormat::Bgra8Unorm, wgpu::TextureFormat::Rgba8Unorm];
     formats.iter().copied().find(|format| plain.contains(format))

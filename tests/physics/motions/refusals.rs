@@ -295,7 +295,7 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
     );
 }
 
-/// Across a border at the side, the lower one, and a corner.
+/// The discs are in one place across a side border, the lower border, or a corner.
 #[test]
 fn two_discs_in_one_place_across_a_border_are_refused() {
     let both = Periodic::along_both([0.0, 1.0], [0.0, 1.0]);

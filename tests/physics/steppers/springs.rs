@@ -11,8 +11,8 @@ fn springs(run: &Simulation) -> SpringDashpot {
     SpringDashpot::of(run.world(), physics.axes, run.parameters())
 }
 
-/// Steps until two colliding discs have separated. Returns the duration of the contact, s, and the ratio of final to
-/// initial speed.
+/// Takes steps until two colliding discs have separated. Returns the duration of the contact, s, and the ratio of
+/// final to initial speed.
 fn until_parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     let (before, carried) = (relative_velocity(&run), momentum(&run));

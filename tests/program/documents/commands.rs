@@ -1,6 +1,5 @@
-//! Commands in the documentation: the program accepts each. Blocks that begin with ```sh have quick commands, which
-//! all run in
-//! order, in one folder per page; blocks that begin with ```sh slow are only parsed.
+//! Checks the commands in the documentation: the program must accept each. Blocks that begin with ```sh have quick
+//! commands, which all run in order, in one folder per page; blocks that begin with ```sh slow are only parsed.
 
 use std::time::Instant;
 

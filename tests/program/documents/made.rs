@@ -191,7 +191,7 @@ fn place_in_scene_file(name: &str, kind: Kind) -> (&'static str, String) {
 
 fn settings() -> String {
     let mut text =
-        "\n| table | name | option | default | what it is |\n|---|---|---|---|---|\n".to_owned();
+        "\n| table | name | option | default | meaning |\n|---|---|---|---|---|\n".to_owned();
     for about in Settings::about() {
         let (table, field) = place_in_scene_file(about.name, about.kind);
         let default = Settings::default().get(about.name).expect("a setting");
@@ -209,7 +209,7 @@ fn columns() -> String {
     let described = json(out.join("data.json"));
     let mut text = String::new();
     for (name, columns) in described["tables"].as_object().expect("tables") {
-        let _ = write!(text, "\n## {name}\n\n| column | unit | what it is |\n|---|---|---|\n");
+        let _ = write!(text, "\n## {name}\n\n| column | unit | meaning |\n|---|---|---|\n");
         for column in columns.as_array().expect("columns") {
             let said = |field: &str| cell(column[field].as_str().unwrap_or_default());
             let _ = writeln!(text, "| `{}` | {} | {} |", said("name"), said("unit"), said("about"));

@@ -114,7 +114,7 @@ fn an_animation_that_is_stopped_leaves_nothing() {
     robot.take_steps(300);
     robot.state_mut().preferences.speed = 0.01;
     robot.clicks(&["Save GIF", "Stop GIF"]);
-    assert_eq!(robot.written(), "Stopped: there is no GIF");
+    assert_eq!(robot.written(), "Stopped: no GIF is saved");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }
 
@@ -144,7 +144,7 @@ mod with_ffmpeg {
         assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
         let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Film");
         assert_eq!(field.accesskit_node().numeric_value(), Some(25.0));
-        assert!(robot.shows("at the pace of watching, 1×"));
+        assert!(robot.shows("at the pace of the window, 1×"));
         robot.state_mut().preferences.video_rate_hz = 50.0;
         robot.state_mut().preferences.speed = 0.1;
         let (slow, _) = film(&mut robot);
@@ -182,7 +182,7 @@ mod with_ffmpeg {
         robot.take_steps(3);
         assert!(robot.state().is_writing() && robot.steps() == before + 3, "the run goes on");
         robot.click("Stop video");
-        assert_eq!(robot.written(), "Stopped: there is no video");
+        assert_eq!(robot.written(), "Stopped: no video is saved");
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
         assert!(robot.harness.query_by_label("Save video").is_some(), "another can be asked for");
     }

@@ -11,7 +11,7 @@ use crate::solver::{
     velocity_distance, velocity_error,
 };
 
-/// Larger scenes take longer and show nothing new.
+/// Largest number of grains of the tested scenes. Larger scenes take longer and show nothing new.
 const MOST_GRAINS: usize = 250;
 
 /// Steps after which walls driven by a force have reached the grains.

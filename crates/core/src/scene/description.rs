@@ -355,10 +355,10 @@ impl Scene {
 words! {
     /// File formats of recordings.
     pub enum FormatName {
-        Parquet = "parquet", "Parquet, for pandas, polars and their like";
+        Parquet = "parquet", "Parquet, for pandas, polars and similar programs";
         Csv = "csv", "Text with commas";
-        Vtk = "vtk", "Files of VTK, for ParaView";
-        Ovito = "ovito", "Dumps as LAMMPS writes them, for OVITO";
+        Vtk = "vtk", "VTK files, for ParaView";
+        Ovito = "ovito", "LAMMPS dumps, for OVITO";
         Fields = "fields", "Density, velocity and stress on a grid, smoothed over a mean diameter, as images for \
             ParaView";
     }

@@ -13,7 +13,7 @@ use super::settings::SolverSettings;
 /// use slump_core::sim::ProblemVisitor;
 /// use slump_core::solver::{Memory, Method, Model, SolverSettings, StepProblem, residual, solve};
 ///
-/// /// What one method leaves undone.
+/// /// The residual after a solve with one method.
 /// struct Left(Method);
 ///
 /// impl ProblemVisitor for Left {

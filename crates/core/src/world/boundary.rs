@@ -118,7 +118,7 @@ impl Boundary {
         matches!(self, Self::Piston { .. })
     }
 
-    /// Its own velocity in the next `secs`; `None` if it does not move by itself.
+    /// Velocity of a shape that moves by itself, in the next `secs`; `None` for other shapes.
     pub(crate) fn velocity_in(&self, secs: f64) -> Option<RigidVelocity> {
         match *self {
             Self::Piston { normal, speed, travel, .. } => {

@@ -108,7 +108,7 @@ pub struct TurningGravity {
 }
 
 impl TurningGravity {
-    /// The turning gravity made from `gravity` and `turn`. Only uniform gravity turns.
+    /// Makes the turning gravity from `gravity` and `turn`. Only uniform gravity turns; otherwise `None`.
     pub(crate) fn of(gravity: Gravity, turn: Option<&GravityTurn>) -> Option<Self> {
         match gravity {
             Gravity::Uniform { acceleration } => {

@@ -39,12 +39,12 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// Only left and right borders, m.
+    /// A cell whose left and right borders wrap, m.
     pub const fn along_x(x: [f64; 2]) -> Self {
         Self { x: Some(x), y: None, shear_rate: 0.0, shift: 0.0 }
     }
 
-    /// All four borders, m.
+    /// A cell whose four borders wrap, m.
     pub const fn along_both(x: [f64; 2], y: [f64; 2]) -> Self {
         Self { x: Some(x), y: Some(y), shear_rate: 0.0, shift: 0.0 }
     }

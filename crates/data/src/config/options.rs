@@ -1,5 +1,5 @@
-//! A [`Config`] as options of the command line, and as the flat table with the same names in studies and journals. Also
-//! one-sentence messages for errors in a command line.
+//! Converts a [`Config`] to and from options of the command line, and a flat table with the same names in studies and
+//! journals. Also makes one-sentence messages of errors in a command line.
 
 use std::error::Error as _;
 use std::fmt;

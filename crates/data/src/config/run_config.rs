@@ -40,7 +40,7 @@ pub struct Config {
     pub folder: PathBuf,
 }
 
-/// Where a scene comes from, and what of it is not a setting.
+/// Source of a scene: the request apart from its settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, clap::Args)]
 #[serde(rename_all = "kebab-case")]
 pub struct SceneSource {
@@ -209,9 +209,9 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// The checked scene with the changes, except that a new pile is not settled: the scene has the built-in grains, or
-    /// the grains in their initial positions, instead. It is quick, so that a wrong value is reported before long work
-    /// begins.
+    /// Makes the scene with the changes and checks it, without settling a new pile: the scene has the built-in grains,
+    /// or the grains in their first positions, instead. This takes little time, so that a wrong value is reported
+    /// before long work begins.
     ///
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read.
@@ -219,8 +219,8 @@ impl Config {
         self.change(&self.base_scene()?)
     }
 
-    /// The checked scene with the changes. A new pile is made here, which takes a while: `progress` is called
-    /// repeatedly and stops the work by returning false.
+    /// Makes the scene with the changes and checks it. A new pile takes a while: `progress` is called repeatedly and
+    /// stops the work by returning false.
     ///
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read. Also fails if the

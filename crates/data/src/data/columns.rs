@@ -69,7 +69,7 @@ struct GrainTableRow {
 }
 
 const UNWRAPPED: &str =
-    "centre of a grain at the start, and all its ways since: borders that wrap have no part in it";
+    "centre at the start plus all displacements since then, not wrapped at periodic borders";
 
 const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     ColumnSpec::step(|row| row.step),
@@ -77,12 +77,18 @@ const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     column(
         "id",
         "",
-        "number of the disc in all frames; fixed discs follow the grains, and grains put in later follow boundaries",
+        "number of the disc, the same in all frames: grains first, then fixed discs, boundaries, and grains that \
+         were added later",
         Count(|row| row.state.id.into()),
     ),
     column("x", "m", "centre", Number(|row| row.state.position.x)),
     column("y", "m", "centre", Number(|row| row.state.position.y)),
-    column("angle", "rad", "turned since the start, anticlockwise", Number(|row| row.state.angle)),
+    column(
+        "angle",
+        "rad",
+        "rotation since the start, anticlockwise",
+        Number(|row| row.state.angle),
+    ),
     column("vx", "m/s", "velocity of the centre", Number(|row| row.state.velocity.x)),
     column("vy", "m/s", "velocity of the centre", Number(|row| row.state.velocity.y)),
     column(
@@ -95,13 +101,13 @@ const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     column(
         "mass",
         "kg",
-        "mass; none of what is fixed",
+        "mass; missing for fixed discs",
         SomeNumber(|row| (row.kind != FIXED).then_some(row.state.mass)),
     ),
     column(
         "kind",
         "",
-        "grain, fixed disc, or a grain that went through a wall or left the world",
+        "grain, fixed disc, or lost: a grain that went through a wall or left the world",
         Word(KINDS, |row| row.kind as u32),
     ),
     column("x_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.x)),
@@ -151,10 +157,10 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     column(
         "id_j",
         "",
-        "body j, by its id: a grain, after them a fixed disc, after those a boundary",
+        "id of body j: grains first, then fixed discs, then boundaries",
         Count(|row| row.other_id),
     ),
-    column("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
+    column("kind_j", "", "kind of body j", Word(OTHER_KINDS, |row| row.kind)),
     column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
     column("x", "m", "contact point", Number(|row| row.state.point.x)),
     column("y", "m", "contact point", Number(|row| row.state.point.y)),
@@ -163,25 +169,27 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     column(
         "gap",
         "m",
-        "distance of the surfaces as the step began; negative is overlap",
+        "distance of the surfaces at the beginning of the step; negative for an overlap",
         Number(|row| row.state.gap),
     ),
     column(
         "normal_force",
         "N",
-        "on i along the normal as it was, mean over the step with its shocks; negative pulls",
+        "force on i along the normal at the beginning of the step, mean over the step with its shocks; negative \
+         pulls",
         Number(|row| row.state.normal_force),
     ),
     column(
         "tangential_force",
         "N",
-        "on i along (-ny, nx), likewise; times -radius the torque on either grain",
+        "force on i along (-ny, nx), mean over the step with its shocks; multiplied by -radius, the torque on \
+         either grain",
         Number(|row| row.state.tangential_force),
     ),
     column(
         "status",
         "",
-        "what the laws of contact and friction make of it",
+        "status under the contact law and friction",
         Word(STATUSES, |row| match row.state.status {
             ContactStatus::Open => 0,
             ContactStatus::Stick => 1,
@@ -191,16 +199,16 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     column(
         "bond",
         "",
-        "whether its bond lives; none where the law knows no bonds",
+        "true if the pair is bonded; missing under laws without bonds",
         Flag(|row| row.has_bonds.then_some(row.state.bond_stretch.is_some())),
     ),
     column(
         "stretch",
         "m",
-        "how far its bond is stretched",
+        "stretch of the bond; missing without a bond",
         SomeNumber(|row| row.state.bond_stretch),
     ),
-    column("age", "", "steps since the pair was found to touch", Count(|row| row.state.age_steps)),
+    column("age", "", "steps since the pair began to touch", Count(|row| row.state.age_steps)),
     column(
         "fx",
         "N",
@@ -251,11 +259,11 @@ struct Bin {
 const BIN_COLUMNS: &[ColumnSpec<Bin>] = &[
     ColumnSpec::step(|bin| bin.step),
     ColumnSpec::time(|bin| bin.time_secs),
-    column("quantity", "", "what is counted", Name(|bin| bin.quantity)),
+    column("quantity", "", "counted quantity", Name(|bin| bin.quantity)),
     column("unit", "", "unit of from and to", Name(|bin| bin.unit)),
-    column("from", "", "where the bin begins, which belongs to it", Number(|bin| bin.from)),
-    column("to", "", "where it ends", Number(|bin| bin.to)),
-    column("count", "", "how many are in it", Count(|bin| bin.count)),
+    column("from", "", "lower end of the bin, which belongs to it", Number(|bin| bin.from)),
+    column("to", "", "upper end of the bin, which belongs to the next", Number(|bin| bin.to)),
+    column("count", "", "number in the bin", Count(|bin| bin.count)),
 ];
 
 pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Table {

@@ -74,31 +74,43 @@ struct PairTableRow {
     sum: PairSum,
 }
 
-const OVER: &str = "time since the frame before, or since the recording began: means are over it";
+const OVER: &str =
+    "time over which means are taken: since the previous frame, or since the recording began";
 
 const PAIR_COLUMNS: &[ColumnSpec<PairTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
     column("mean_time", "s", OVER, Number(|row| row.secs)),
     column("id_i", "", "grain i", Count(|row| row.id.into())),
-    column("id_j", "", "body j, as contacts have it", Count(|row| row.other_id)),
-    column("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
+    column("id_j", "", "id of body j, as in contacts", Count(|row| row.other_id)),
+    column("kind_j", "", "kind of body j", Word(OTHER_KINDS, |row| row.kind)),
     column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
-    column("steps", "", "steps in which it transmitted anything", Count(|row| row.sum.steps)),
+    column("steps", "", "steps in which the pair transmitted a force", Count(|row| row.sum.steps)),
     column(
         "normal_force",
         "N",
-        "on i along the normals as they were, mean over mean_time, open or not; negative pulls",
+        "force on i along the normal of each step, mean over mean_time, with 0 while the pair is apart; negative \
+         pulls",
         Number(|row| row.sum.normal / row.secs),
     ),
     column(
         "tangential_force",
         "N",
-        "on i along (-ny, nx), likewise; times -radius the torque on either grain",
+        "force on i along (-ny, nx), mean over mean_time; multiplied by -radius, the torque on either grain",
         Number(|row| row.sum.tangential / row.secs),
     ),
-    column("fx", "N", "force on i, likewise", Number(|row| row.sum.impulse.x / row.secs)),
-    column("fy", "N", "force on i, likewise", Number(|row| row.sum.impulse.y / row.secs)),
+    column(
+        "fx",
+        "N",
+        "force on i, mean over mean_time",
+        Number(|row| row.sum.impulse.x / row.secs),
+    ),
+    column(
+        "fy",
+        "N",
+        "force on i, mean over mean_time",
+        Number(|row| row.sum.impulse.y / row.secs),
+    ),
 ];
 
 fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
@@ -133,12 +145,27 @@ const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = &[
     column(
         "mean_stress_xx",
         "N/m",
-        "as stress_xx, mean over mean_time, with the area of the frame",
+        "mean of stress_xx over mean_time, with the area of this frame",
         SomeNumber(|stress| some(stress.x_axis.x)),
     ),
-    column("mean_stress_xy", "N/m", "likewise", SomeNumber(|stress| some(stress.y_axis.x))),
-    column("mean_stress_yx", "N/m", "likewise", SomeNumber(|stress| some(stress.x_axis.y))),
-    column("mean_stress_yy", "N/m", "likewise", SomeNumber(|stress| some(stress.y_axis.y))),
+    column(
+        "mean_stress_xy",
+        "N/m",
+        "mean of stress_xy over mean_time, with the area of this frame",
+        SomeNumber(|stress| some(stress.y_axis.x)),
+    ),
+    column(
+        "mean_stress_yx",
+        "N/m",
+        "mean of stress_yx over mean_time, with the area of this frame",
+        SomeNumber(|stress| some(stress.x_axis.y)),
+    ),
+    column(
+        "mean_stress_yy",
+        "N/m",
+        "mean of stress_yy over mean_time, with the area of this frame",
+        SomeNumber(|stress| some(stress.y_axis.y)),
+    ),
 ];
 
 pub(super) fn of_grains(stresses: &[DMat2]) -> Table {
@@ -169,20 +196,26 @@ pub(super) fn of_walls(means: &[WallMeans]) -> Table {
         column(
             "mean_fx",
             "N",
-            "force of the grains on it, mean over the time since the frame before",
+            "force of the grains on the wall, mean over the time since the previous frame",
             SomeNumber(|means| some(means.force.x)),
         ),
-        column("mean_fy", "N", "likewise", SomeNumber(|means| some(means.force.y))),
+        column(
+            "mean_fy",
+            "N",
+            "force of the grains on the wall, mean over the time since the previous frame",
+            SomeNumber(|means| some(means.force.y)),
+        ),
         column(
             "mean_torque",
             "N m",
-            "torque likewise, about (x, y) as it is now; none where borders wrap",
+            "torque of the grains on the wall about the present (x, y), mean over the same time; missing with \
+             periodic borders",
             SomeNumber(|means| some(means.torque)),
         ),
         column(
             "work_between",
             "J",
-            "what it did on grains since the frame before, as fast as it was at the end of each step",
+            "work on grains since the previous frame, with the wall's velocity at the end of each step",
             SomeNumber(|means| some(means.work)),
         ),
     ];

@@ -13,28 +13,23 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "factorisations",
         "",
-        "matrices that it factorised",
+        "matrices that the solver factorised",
         Count(|row| row.factorisations.into()),
     ),
-    column(
-        "converged",
-        "",
-        "whether the step was solved as asked",
-        Flag(|row| Some(row.converged)),
-    ),
-    column("stalled", "", "whether more sweeps would be of no use", Flag(|row| Some(row.stalled))),
+    column("converged", "", "true if the stopping test was met", Flag(|row| Some(row.converged))),
+    column("stalled", "", "true if more sweeps would not help", Flag(|row| Some(row.stalled))),
     column("residual", "1", "common residual of the step's problem", Number(|row| row.residual)),
     column(
         "model_residual",
         "1",
-        "the same of the model of friction that was solved in the place of Coulomb's law",
+        "residual of the friction model, if one was solved in place of Coulomb friction",
         SomeNumber(|row| row.model_residual),
     ),
     column(
         "velocity_error",
         "m/s",
-        "how far velocities are taken to be from Coulomb's law: root mean square, weighted with mass, over the \
-            grains that touch something",
+        "estimated distance of the velocities from those of Coulomb friction: root mean square, weighted with \
+         mass, over the grains in contact",
         Number(|row| row.velocity_error),
     ),
     column("contacts", "", "contacts", Count(|row| row.contacts.into())),
@@ -56,8 +51,9 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "potential_energy",
         "J",
-        "of grains in the gravity field, where they are; a step of moreau, which moves them by the velocities after it, \
-         changes it by -gravity_work and half the time step times -g times the change of momentum",
+        "potential energy of the grains in the gravity field at their positions; a step of moreau, which moves \
+         grains by their velocities at its end, changes it by -gravity_work plus half the time step times -g times \
+         the change of momentum",
         Number(|row| row.potential_energy),
     ),
     column(
@@ -75,7 +71,7 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "wall_work",
         "J",
-        "part of both that surfaces which move did in the step",
+        "part of normal_work and tangential_work that moving surfaces did",
         Number(|row| row.wall_work),
     ),
     column(
@@ -87,39 +83,39 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     column(
         "drive_work",
         "J",
-        "work in the step of the forces that drive walls, less that of their damping",
+        "work in the step of the forces that drive walls, minus the work of their damping",
         SomeNumber(|row| row.drive_work),
     ),
     column(
         "border_work",
         "J",
-        "work that borders which shear did in the step, beside the others",
+        "work of shearing borders in the step, in addition to the other works",
         SomeNumber(|row| row.border_work),
     ),
     column(
         "gravity_work",
         "J",
-        "impulse of gravity, and of forces from outside, in the step times the mean of the velocities before and after: with the other \
-         works it is the change of kinetic energy",
+        "work of gravity and external forces: their impulse in the step times the mean of the velocities before \
+         and after; together with the other works it is the change of kinetic energy",
         Number(|row| row.gravity_work),
     ),
     column(
         "slump",
         "1",
-        "how far the mean height of the grains has sunk, in its first value; NaN if all grains are lost",
+        "decrease of the mean height of the grains, divided by its initial value; NaN if all grains are lost",
         Number(|row| row.slump),
     ),
-    column("bond_work", "J", "work that bonds did in the step", SomeNumber(|row| row.bond_work)),
+    column("bond_work", "J", "work of the bonds in the step", SomeNumber(|row| row.bond_work)),
     column(
         "bond_energy",
         "J",
-        "what stretching the bonds that live took",
+        "energy that stretched the present bonds",
         SomeNumber(|row| row.bond_energy),
     ),
     column(
         "broken_bond_energy",
         "J",
-        "what bonds took that have broken",
+        "energy that stretched the bonds that have broken",
         SomeNumber(|row| row.broken_bond_energy),
     ),
     column(

@@ -51,11 +51,11 @@ columns! {
     /// Measures of the pile around one grain at one moment. A lost grain has no contacts, and its other numbers are
     /// NaN.
     pub struct GrainMeasures {
-        /// Contacts with grains and with what does not move.
+        /// Number of contacts with other grains, fixed discs and boundaries.
         coordination: u32, "1";
-        /// Whether it carries nothing on: it is one of the pile's rattlers.
+        /// True for a rattler, a grain that transmits no force.
         rattler: bool, "1";
-        /// a: area of its cell, as far as that belongs to the packing.
+        /// a: area of the grain's cell, as far as it belongs to the packing.
         cell_area: f64, "m²";
         /// σ_xx of (1/a) Σ f ⊗ ℓ over its contacts, compression positive: f on the grain, ℓ from the contact point to
         /// its centre. The mean over all grains, weighted by a, is the pile's. NaN without a cell.
@@ -70,7 +70,7 @@ columns! {
         pressure: f64, "N/m";
         /// q = (σ_1 − σ_2)/2 of the symmetric part of σ, never negative.
         deviator: f64, "N/m";
-        /// Area of its disc in that of its cell; NaN where the cell is not closed.
+        /// Area of its disc divided by the area of its cell; NaN if the cell is not closed.
         solid_fraction: f64, "1";
     }
 }
@@ -109,9 +109,9 @@ columns! {
     /// Measures of the whole pile at one moment. An undefined number is NaN, such as a mean over nothing, or a
     /// direction if all directions are alike.
     pub struct PileMeasures {
-        /// Grains that count: all that are not lost.
+        /// Number of grains that are not lost. The other measures are those of these grains.
         grains: u32, "1";
-        /// Contacts that count: in touch, and of grains that count.
+        /// Number of touching contacts.
         contacts: u32, "1";
         /// A: area of the grains' cells, as far as they belong to the packing.
         area: f64, "m²";
@@ -122,7 +122,7 @@ columns! {
         stress_xx: f64, "N/m";
         /// σ_xy: x of the forces, y of the branches.
         stress_xy: f64, "N/m";
-        /// σ_yx: y of the forces, x of the branches. It is σ_xy where no grain begins to spin.
+        /// σ_yx: y of the forces, x of the branches. It equals σ_xy if the torques on each grain balance.
         stress_yx: f64, "N/m";
         /// σ_yy.
         stress_yy: f64, "N/m";
@@ -130,12 +130,12 @@ columns! {
         pressure: f64, "N/m";
         /// q = (σ_1 − σ_2)/2 of the symmetric part of σ, never negative.
         deviator: f64, "N/m";
-        /// Direction in which compression is largest, from the x axis anticlockwise, at least 0 and below 180.
+        /// Direction of the largest compression, anticlockwise from the x axis, at least 0 and below 180.
         principal_direction: f64, "degree";
-        /// (1/2A) Σ m |v − v̄|²: the part of the pressure that is momentum carried by grains, in none of the stresses
-        /// above. v̄ is the mean flow at the grain, linear in place and fitted to all grains less than 3 mean diameters
-        /// away, itself included; of n grains n/(n − 3) makes up for the fit. Where they are fewer than 7, it is the
-        /// velocity of the centre of mass of all.
+        /// (1/2A) Σ m |v − v̄|²: the part of the pressure that is the momentum carried by the fluctuations of grains;
+        /// no stress above contains it. v̄ is the mean flow at the grain, a linear fit to all grains less than 3 mean
+        /// diameters away, including the grain itself. With n of them, the factor n/(n − 3) corrects for the fit; with
+        /// fewer than 7, v̄ is the velocity of the centre of mass of all grains.
         kinetic_pressure: f64, "N/m";
         /// F_xx of the fabric F = mean of n ⊗ n over all contacts; its trace is 1.
         fabric_xx: f64, "1";
@@ -143,42 +143,44 @@ columns! {
         fabric_xy: f64, "1";
         /// F_yy.
         fabric_yy: f64, "1";
-        /// F_1 − F_2: 0 where normals have no direction in common, 1 where they all have the same.
+        /// F_1 − F_2: 0 if the normals have no preferred direction, 1 if all have the same direction.
         fabric_anisotropy: f64, "1";
-        /// Direction that most normals have, from the x axis anticlockwise, at least 0 and below 180.
+        /// Preferred direction of the normals, anticlockwise from the x axis, at least 0 and below 180.
         fabric_direction: f64, "degree";
-        /// Contacts of a grain, with grains and with what does not move: the mean over all grains.
+        /// Mean number of contacts per grain, with other grains, fixed discs and boundaries.
         coordination: f64, "1";
-        /// The mean over the grains that are no rattlers, of their contacts that bear a force and lead to no rattler.
-        coordination_without_rattlers: f64, "1";
-        /// Grains that carry nothing on: those with fewer than two contacts that bear a force and lead to no
+        /// Mean number of contacts per grain without rattlers, of contacts that bear a force and do not involve a
         /// rattler.
+        coordination_without_rattlers: f64, "1";
+        /// Number of rattlers: grains with fewer than two contacts that bear a force and are not with a rattler.
         rattlers: u32, "1";
-        /// Area of all discs, overlaps twice, in that of the box around them.
+        /// Area of all discs, overlaps counted twice, divided by the area of the box around them.
         solid_fraction_box: f64, "1";
-        /// Area of the discs with closed cells in that of their cells.
+        /// Area of the discs with closed cells divided by the area of their cells.
         solid_fraction_cells: f64, "1";
-        /// Grains whose cells are closed: their pores are too small for a mean grain.
+        /// Number of grains with closed cells: their pores are too small for a mean grain.
         closed_cells: u32, "1";
-        /// Part of the contacts that slip.
+        /// Fraction of the contacts that slip.
         sliding_share: f64, "1";
-        /// Part of the contacts that open: they pull as hard as they can, which without cohesion is not at all.
+        /// Fraction of the contacts that open: they pull with the largest force that the law allows, which is 0 without
+        /// cohesion.
         open_share: f64, "1";
-        /// Part of the contacts that pull.
+        /// Fraction of the contacts that pull.
         tensile_share: f64, "1";
-        /// Sets of grains that contacts join; a grain alone is one. Bodies that no grain moves join none.
+        /// Number of sets of grains that are connected by contacts; an isolated grain is a set. Fixed discs and
+        /// boundaries connect no grains.
         clusters: u32, "1";
-        /// Grains of the largest cluster.
+        /// Number of grains in the largest cluster.
         largest_cluster: u32, "1";
         /// ⟨|N|⟩, the mean over contacts that bear a force: the scale of P(f), f = N/⟨|N|⟩.
         mean_normal_force: f64, "N";
-        /// ⟨f²⟩: 1 where all forces are the same, 2 where they are distributed exponentially.
+        /// ⟨f²⟩: 1 if all forces are equal, 2 if they are distributed exponentially.
         normal_force_second_moment: f64, "1";
-        /// ⟨|f|³⟩: 1 where all forces are the same, 6 where they are distributed exponentially.
+        /// ⟨|f|³⟩: 1 if all forces are equal, 6 if they are distributed exponentially.
         normal_force_third_moment: f64, "1";
         /// Largest |f|.
         largest_normal_force: f64, "1";
-        /// Part of the contacts that bear a force whose |f| is more than 1: the strong network.
+        /// Fraction of the force-bearing contacts with |f| above 1: the strong network.
         strong_share: f64, "1";
     }
 }

@@ -43,7 +43,8 @@ pub(super) struct Limits {
     pub cost_secs: f64,
     /// Half the width of every interval, in the quantity's unit.
     pub within: Option<f64>,
-    /// Number of parts, of which this is one. Together they have this many times the initial states of one part.
+    /// Number of parts into which the budget is divided. Together they have this many times the initial states of one
+    /// part.
     pub parts: usize,
     /// True to show progress in a bar on stderr.
     pub shows_progress: bool,

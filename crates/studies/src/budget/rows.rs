@@ -33,7 +33,7 @@ pub(crate) struct CauseRow {
 pub enum Trust {
     /// Neither the method nor the choice of a law changes it by more than the user allows.
     Yes,
-    /// The method does not; the choice of a law does, or its effect is not yet known.
+    /// The method does not change it by more. The choice of a law does, or its effect is not yet known.
     Mostly,
     /// The method changes it by more.
     No,

@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 /// Significance level: p-values below it count as evidence.
 pub(super) const SIGNIFICANT: f64 = 0.05;
 
-/// Largest ratio of the ends of an interval that can confirm a value in it.
+/// An interval confirms a value only if the ratio of its ends is at most this.
 const NARROW: f64 = 3.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -30,11 +30,11 @@ pub enum ChartPart {
     Simulation,
     /// Error against the time of a step, for 138 to 10,000 grains
     Size,
-    /// How many solutions steps have, and how far apart they are
+    /// Number of solutions of a step, and their distances
     Solutions,
 }
 
-/// What to chart, and how.
+/// Options of a chart.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChartOptions {
     /// Folder for pictures, tables and measurements; the same command continues where it stopped

@@ -21,8 +21,10 @@ pub struct SweepChart {
 }
 
 impl SweepChart {
+    /// Checks that all settings of the chart vary.
+    ///
     /// # Errors
-    /// If it names a setting that does not vary.
+    /// If a setting of the chart does not vary.
     pub(super) fn check(&self, varied: &[Vec<String>]) -> Result<()> {
         let names = || varied.iter().flatten();
         let one = [("chart.x", &self.x), ("chart.curves", &self.curves)].into_iter();

@@ -55,7 +55,7 @@ static EXPERIMENTS: [Experiment; 10] = [
     janssen::EXPERIMENT,
 ];
 
-/// What to hold against what was published, and how.
+/// Options of a comparison with published experiments.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ValidateOptions {
     /// Experiments [default: all]

@@ -62,7 +62,7 @@ impl Settings {
     pub const STEPPER: About = About {
         name: "stepper",
         value_name: "NAME",
-        help: "Stepper: the contact law and the way to take a step; moreau is that of the paper (`slump list \
+        help: "Stepper: the rule that advances the grains by Δt, with its contact law; moreau is the paper's (`slump list \
             steppers`)",
         heading: "Physics",
         kind: Stepper::KIND,
@@ -70,7 +70,7 @@ impl Settings {
         control: Some(Control {
             label: "Stepper",
             symbol: "stepper",
-            hint: "The contact law and the way to take a step.",
+            hint: "The rule that advances the grains by Δt, with its contact law.",
             ..Control::PLAIN
         }),
     };

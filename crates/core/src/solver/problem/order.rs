@@ -99,7 +99,7 @@ impl RowOrder {
         fixed
     }
 
-    /// Sorts by colours contacts of which only the bodies are known, and that the first `fixed` are with fixed bodies.
+    /// Sorts contacts by colours if only their bodies are known. The first `fixed` contacts are with fixed bodies.
     pub(super) fn sort_by_colours(
         &mut self,
         grains: usize,

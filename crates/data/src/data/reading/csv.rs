@@ -169,7 +169,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
     }
 }
 
-/// A hint for repairing a header line that names none of the columns, for messages.
+/// Part of a message: a hint for repairing a header line that names none of the columns.
 fn way_out(found: &[String]) -> &'static str {
     let all = |is_so: &dyn Fn(&str) -> bool| !found.is_empty() && found.iter().all(|it| is_so(it));
     if all(&|it| it.parse::<f64>().is_ok()) {

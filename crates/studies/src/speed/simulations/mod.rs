@@ -67,7 +67,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
 /// A variant with its budget, the accuracy to which it solves steps.
 struct BudgetedVariant {
     charted: Change,
-    /// Law of the references that it is compared with.
+    /// Law of the reference solutions for this variant.
     law: Stepper,
     /// Change named after the budget.
     change: Change,
