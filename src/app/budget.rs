@@ -80,13 +80,24 @@ pub(super) fn too_long(
     })
 }
 
-/// A hint: something to try and its effect.
-pub(super) fn what_to_try(settings: &Settings) -> &'static str {
+/// Time step (s) from which the hint is a smaller one.
+const LONG_STEP_SECS: f64 = 5e-3;
+/// Touch tolerance, in mean diameters, above which the hint on Δt does not apply (`docs/theory.md`).
+const LARGE_TOLERANCE: f64 = 1e-4;
+
+/// A hint: something to try and its effect; none if no effect is known for these settings.
+pub(super) fn what_to_try(settings: &Settings) -> Option<&'static str> {
     let parameters = &settings.parameters;
     if parameters.bond == 0.0 {
-        return "At Bond 0 nothing sticks, and Δt hardly matters: drag Bond and see.";
+        return Some("At Bond 0 nothing sticks, and Δt hardly matters: drag Bond and see.");
     }
-    match settings.stepper {
+    Some(match settings.stepper {
+        Stepper::Moreau if parameters.touch_tolerance > LARGE_TOLERANCE => return None,
+        Stepper::Moreau
+            if parameters.bond <= WEAK && parameters.time_step_secs >= LONG_STEP_SECS =>
+        {
+            "A smaller Δt makes these grains stick less: drag it and see."
+        }
         Stepper::Moreau if parameters.bond <= WEAK => {
             "A larger Δt makes these grains stick better: drag it and see."
         }
@@ -101,7 +112,7 @@ pub(super) fn what_to_try(settings: &Settings) -> &'static str {
         Stepper::TgsSoft | Stepper::Dem => {
             "Here cohesion is an ordinary force at every Δt: drag Bond and see."
         }
-    }
+    })
 }
 
 #[cfg(test)]
@@ -164,11 +175,16 @@ mod tests {
             (Stepper::Dem, 20.0),
         ] {
             (settings.stepper, settings.parameters.bond) = (stepper, bond);
-            said.push(what_to_try(&settings));
+            said.push(what_to_try(&settings).expect("a hint"));
         }
         let larger = said.iter().filter(|text| text.contains("larger Δt makes these grains stick"));
         assert_eq!(larger.count(), 1, "{said:?}");
         said.dedup();
         assert_eq!(said.len(), 5);
+        (settings.stepper, settings.parameters.bond) = (Stepper::Moreau, 20.0);
+        let hint = what_to_try(&settings.over(LONG_STEP_SECS)).expect("a hint");
+        assert!(hint.contains("smaller Δt"), "{hint}");
+        settings.parameters.touch_tolerance = 0.01;
+        assert_eq!(what_to_try(&settings), None);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::setting_control::written;
+use super::number_text::written;
 use crate::sim::Settings;
 use crate::world::Parameters;
 

@@ -248,7 +248,7 @@ pub const LESSONS: [Lesson; 7] = [
         page: Some(Page::Pile),
         leaves_free: |_| true,
         asks_for: |run, preferences| match (waits_at_start(run), preferences.page) {
-            (true, Some(Page::Pile)) => &["scenes", "new pile", "Bond", "Δt", "ρ", "μ", "trust"],
+            (true, Some(Page::Pile)) => &["scenes"],
             _ => &[],
         },
         sliders: &["bond", "dt", "rho", "mu"],

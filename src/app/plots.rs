@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::axes::{plot_with_axes, with_least, with_room};
 use super::curve_pieces::pieces;
 use super::ensemble::Band;
-use super::time_text::clock_text;
+use super::glossary::explained;
+use super::number_text::clock_text;
 use crate::data::Observed;
 use crate::live::Curve;
 use crate::render::numbers::si_prefix;
@@ -97,7 +98,8 @@ pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
 
 fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Option<f64> {
     let (title, factor) = title(data, quantity);
-    ui.add(Label::new(RichText::new(title).small()).truncate());
+    let label = ui.add(Label::new(RichText::new(&title).small()).truncate());
+    explained(label, &title);
     let log = quantity.logarithmic;
     let group = egui::Id::unique("time");
     let height = (ui.available_height() - 2.0).max(40.0);

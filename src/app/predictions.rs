@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::titles::millis_text;
 use crate::live::LiveFrame;
+use crate::number::millis_text;
 use crate::sim::Observables;
 
 /// The question of a lesson.
@@ -70,10 +70,10 @@ pub(super) fn two_time_steps(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn shorter_at_rest(rows: &[Observables]) -> Option<(usize, String)> {
     let [before, after] = rows else { return None };
     let text = format!(
-        "With {} the pile had slumped by {:.3}, after {:.1} s with {} by {:.3}.",
+        "With {} the pile had slumped by {:.3}, after {} with {} by {:.3}.",
         millis_text(before.time_step_secs),
         before.slump,
-        after.time_secs - before.time_secs,
+        millis_text(after.time_secs - before.time_secs),
         millis_text(after.time_step_secs),
         after.slump
     );

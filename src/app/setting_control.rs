@@ -6,8 +6,9 @@ use egui::{
     WidgetInfo,
 };
 
+use super::glossary::explained;
+use super::number_text::{millis, read_secs, written};
 use super::theme;
-use super::time_text::{millis, read_secs};
 use crate::error::Error;
 use crate::number::millis_text;
 use crate::setting::{About, Control, Kind, Value};
@@ -134,7 +135,8 @@ fn number(
     let draft = ui.data(|data| data.get_temp::<String>(draft_id));
     let (mut edited, mut refused) = (None, None);
     ui.horizontal(|ui| {
-        ui.label(control.label).on_hover_text(control.hint);
+        let label = ui.label(control.label).on_hover_text(control.hint);
+        explained(label, control.symbol);
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let unit = if is_time(control) { "ms" } else { control.unit };
             if !unit.is_empty() {
@@ -244,15 +246,6 @@ fn shown(control: &Control, value: f64) -> String {
     written(if is_time(control) { millis(value) } else { value })
 }
 
-/// Formats a number as people type it: short, and exact when it is read back.
-pub(super) fn written(value: f64) -> String {
-    if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
-}
-
 fn rounded(value: f64) -> f64 {
     let digits = SLIDER_DIGITS - 1;
     format!("{value:.digits$e}").parse().unwrap_or(value)
@@ -263,13 +256,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_short_and_read_back() {
-        for (value, text) in
-            [(1e-3, "1e-3"), (2.5e-4, "2.5e-4"), (0.0, "0"), (100.0, "100"), (0.1, "0.1")]
-        {
-            assert_eq!(written(value), text);
-            assert_eq!(text.parse::<f64>(), Ok(value));
-        }
+    fn a_slider_gives_three_digits() {
         assert_eq!(rounded(1.23456e-4), 1.23e-4);
     }
 }

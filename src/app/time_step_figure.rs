@@ -5,6 +5,7 @@ use egui_plot::{HoverPosition, Line, Points};
 
 use super::axes::{plot_with_axes, with_least, with_room};
 use super::ensemble::Released;
+use super::glossary::explained;
 use super::plots::LEAST_SLUMP;
 use super::theme;
 use super::titles::title_among;
@@ -97,7 +98,8 @@ impl TimeStepFigure {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 head(ui);
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    ui.label(RichText::new(TITLE).small()).on_hover_text(HINT);
+                    let title = ui.label(RichText::new(TITLE).small()).on_hover_text(HINT);
+                    explained(title, TITLE);
                     for series in &self.0 {
                         ui.label(RichText::new("■").small().color(series.colour));
                         ui.add(Label::new(RichText::new(&series.name).small()).truncate());

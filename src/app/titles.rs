@@ -1,9 +1,8 @@
 //! Titles of compared worlds. Each names the settings in which its world differs from the others.
 
 use super::budget::BUDGETS;
-use super::panels::FRONT_SETTINGS;
-use super::setting_control::{called, written};
-use super::time_text::clock_text;
+use super::number_text::{clock_text, written};
+use super::setting_control::called;
 use crate::live::Controls;
 use crate::number::millis_text;
 use crate::setting::Value;
@@ -69,9 +68,9 @@ pub(super) fn change_text(before: &Settings, after: &Settings) -> String {
     format!("{from} → {}", to.strip_prefix(symbol).filter(|_| is_one).unwrap_or(&to))
 }
 
-/// The settings of the four sliders that are always in view.
-pub(super) fn settings_text(settings: &Settings) -> String {
-    let all: Vec<String> = FRONT_SETTINGS.iter().filter_map(|name| said(settings, name)).collect();
+/// The values of these settings.
+pub(super) fn settings_text(settings: &Settings, names: &[&str]) -> String {
+    let all: Vec<String> = names.iter().filter_map(|name| said(settings, name)).collect();
     all.join(", ")
 }
 

@@ -59,7 +59,7 @@ struct LineUp {
 const LINE_UPS: [LineUp; 4] = [
     LineUp {
         name: "Paper Fig. 4",
-        hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s, each step solved as for the figure.",
+        hint: "Bond 20 and 100 × Δt 0.1, 1 and 2 ms, each step solved as for the figure.",
         worlds: |base| {
             let mut base = Settings { solver: PAPER.settings, ..stepped(base, Stepper::Moreau) };
             base.parameters.touch_tolerance = 0.0;
@@ -74,7 +74,7 @@ const LINE_UPS: [LineUp; 4] = [
     },
     LineUp {
         name: "Two laws",
-        hint: "Bond 20 at Δt 1e-4, 1e-3 and 5e-3 s, under the laws moreau and range.",
+        hint: "Bond 20 at Δt 0.1, 1 and 5 ms, under the laws moreau and range.",
         worlds: |base| {
             let of_law =
                 |law| [1e-4, 1e-3, 5e-3].map(|secs| stepped(base.with_bond(20.0).over(secs), law));

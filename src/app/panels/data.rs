@@ -5,7 +5,7 @@ use egui::{Button, RichText, TextEdit, Ui};
 use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
 use crate::app::data_export::{DataChoices, DataOrder};
-use crate::app::time_text::{clock_text, time_field};
+use crate::app::number_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
 use crate::data::{DataSettings, FormatName, check_format};
 

@@ -5,7 +5,7 @@ use egui::{Button, ComboBox, RichText, Slider, Ui};
 use super::shown_settings::{FRONT_SETTINGS, shown_settings};
 use crate::app::context::PanelContext;
 use crate::app::lessons::lesson;
-use crate::app::time_text::clock_text;
+use crate::app::number_text::clock_text;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
 
@@ -193,12 +193,13 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
         return;
     }
     let text = if !context.preferences.starts_again && !context.run.frame.at_start() {
-        LIVE
+        Some(LIVE)
     } else if context.run.slumps() && !context.touring {
         budget::what_to_try(&settings)
     } else {
-        return;
+        None
     };
+    let Some(text) = text else { return };
     ui.add(egui::Label::new(RichText::new(text).small().weak()).truncate()).on_hover_text(text);
 }
 

@@ -4,6 +4,7 @@ use egui::{Align, Align2, Button, ComboBox, Label, Layout, Rect, RichText, Ui};
 
 use super::right_answer::{self, marked};
 use crate::app::context::{PanelContext, Request};
+use crate::app::glossary::explained;
 use crate::app::lessons::{LESSONS, Lesson, lesson};
 use crate::app::predictions::{Prediction, Question};
 use crate::app::theme;
@@ -37,7 +38,7 @@ impl LessonBar {
         } else if let Some(question) = &LESSONS[at].question {
             prediction(ui, context, at, question);
         } else {
-            ui.label(LESSONS[at].watch);
+            explained(ui.label(LESSONS[at].watch), LESSONS[at].watch);
         }
         if self.shows_summary {
             summary(ui, context, &mut self.shows_summary);
@@ -119,7 +120,7 @@ fn prediction(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize, question: 
         ui.label(learnt);
         return;
     }
-    ui.label(LESSONS[at].watch);
+    explained(ui.label(LESSONS[at].watch), LESSONS[at].watch);
     let waits = context.run.frame.at_start() && !context.run.frame.playing;
     let mut answer = predicted.map(|predicted| predicted.answer);
     let mut buttons = Rect::NOTHING;

@@ -6,6 +6,7 @@ use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
 use crate::app::exports::write_table;
 use crate::app::file_names::free_path;
+use crate::app::glossary::explained;
 use crate::app::plots::{LEAST_WIDTH, PlotData, WorldCurve, draw, draw_with_key};
 use crate::app::preferences::Preferences;
 use crate::app::theme;
@@ -145,7 +146,8 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let own = context.run.slump_text(context.run.selected);
         let text = effect(context).or_else(|| Some(format!("{own}; {}", said?)));
         if let Some(text) = text {
-            ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
+            let label = ui.add(egui::Label::new(&text).truncate()).on_hover_text(hint);
+            explained(label, &text);
         }
     });
 }

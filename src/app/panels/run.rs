@@ -3,9 +3,10 @@
 use egui::{Align, Button, RichText, Ui};
 
 use super::gallery::Gallery;
+use super::shown_settings::FRONT_SETTINGS;
 use crate::app::context::{PanelContext, Request};
+use crate::app::number_text::clock_text;
 use crate::app::provenance::CHANGED;
-use crate::app::time_text::clock_text;
 use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
@@ -70,12 +71,6 @@ pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
             context.ask(Request::CopyLink);
         }
     });
-    if let Some(world) = context.run.world() {
-        let text = format!("State {}", world.snapshot.state_hash());
-        let hint = "A hash of where all grains are and how they move, bit by bit. Runs with the same one have come to the \
-                    same state; manifest.json has it as last_state.";
-        ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
-    }
 }
 
 fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery) {
@@ -173,7 +168,7 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
 }
 
 /// Width of the name fields, points.
-const NAME_WIDTH: f32 = 84.0;
+const NAME_WIDTH: f32 = 60.0;
 
 /// Shows the earlier runs, if there are any: a button for each, and a box that shows the newest as a ghost.
 pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -243,7 +238,7 @@ fn title(run: &PastRun, slumps: bool) -> String {
         1 => {
             let last = run.worlds[0].curve.last().filter(|_| slumps);
             let slump = last.map_or(String::new(), |row| format!(", slump {:.3}", row.slump));
-            settings_text(&controls[0].settings) + &slump
+            settings_text(&controls[0].settings, &FRONT_SETTINGS) + &slump
         }
         2 => format!("{first}; {}", title_among(&controls, 1)),
         count => format!("{count} worlds, {first}"),

@@ -1,8 +1,7 @@
-//! Times as the window writes and reads them: in milliseconds. Files and command lines have seconds.
+//! Numbers and times as the window writes and reads them. Times are in milliseconds; files and command lines have
+//! seconds.
 
 use egui::DragValue;
-
-use super::setting_control::written;
 
 /// Units of time that a field understands, and their powers of ten in seconds. A number without a unit is in ms.
 const UNITS: [(&str, i32); 5] = [("ms", -3), ("us", -6), ("µs", -6), ("μs", -6), ("s", 0)];
@@ -32,6 +31,15 @@ pub(super) fn time_field(secs: &mut f64) -> DragValue<'_> {
         .suffix(" ms")
 }
 
+/// Formats a number as people type it: short, and exact when it is read back.
+pub(super) fn written(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
 /// A decimal number times a power of ten.
 fn shifted(text: &str, power: i32) -> Option<f64> {
     let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
@@ -42,6 +50,16 @@ fn shifted(text: &str, power: i32) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_short_and_read_back() {
+        for (value, text) in
+            [(1e-3, "1e-3"), (2.5e-4, "2.5e-4"), (0.0, "0"), (100.0, "100"), (0.1, "0.1")]
+        {
+            assert_eq!(written(value), text);
+            assert_eq!(text.parse::<f64>(), Ok(value));
+        }
+    }
 
     #[test]
     fn a_field_understands_three_units_and_takes_a_plain_number_as_milliseconds() {
