@@ -97,6 +97,9 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
             front::change_pace(&mut state.split().0, is_faster);
         }
     }
+    if pressed(Key::P) {
+        see::present(context, &mut state.preferences);
+    }
     if pressed(Key::H) {
         state.panels.help = !state.panels.help;
     }

@@ -303,3 +303,14 @@ fn a_large_pile_is_solved_as_on_the_command_line_and_says_what_is_left() {
         assert!(last.velocity_error < 0.03 * falling_speed, "{last:?}");
     }
 }
+
+#[test]
+fn a_presentation_is_twice_as_large_until_the_key_is_pressed_again() {
+    let mut robot = Robot::open(pile());
+    let zoom = |robot: &mut Robot| {
+        robot.key(egui::Key::P);
+        robot.frames(2);
+        robot.harness.ctx.zoom_factor()
+    };
+    assert_eq!([zoom(&mut robot), zoom(&mut robot)], [2.0, 1.0]);
+}

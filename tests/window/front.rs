@@ -56,7 +56,7 @@ fn the_ghost_is_at_the_simulated_time_of_the_run_and_says_what_it_is() {
         assert_eq!(ghost.time_step_secs, 1e-3);
         robot.harness.step();
         let texts = robot.painted_texts();
-        let label = format!("earlier run (grey): Δt 1 ms, at {:.3} s", ghost.time_secs);
+        let label = format!("earlier run (grey): Δt 1 ms, at {:.1} ms", 1e3 * ghost.time_secs);
         assert!(texts.iter().any(|text| text.text == label), "{label}");
     }
     // Beyond its end it stays there, and a run that comes back has all of its moments.

@@ -380,3 +380,17 @@ fn the_lesson_on_bonds_asks_for_one_thing_after_the_other() {
     let row = robot.observables();
     assert_eq!(row.time_secs, row.step as f64 * row.time_step_secs, "from the start");
 }
+
+#[test]
+fn lessons_on_piles_draw_the_forces_of_bonds_and_give_the_choice_back() {
+    let mut robot = Robot::open(Config::default());
+    let shows_forces = |robot: &Robot| robot.state().preferences.style.show_forces;
+    assert!(!shows_forces(&robot));
+    for (at, lesson) in LESSONS.iter().enumerate() {
+        robot.state_mut().visit(at);
+        robot.settle();
+        assert_eq!(shows_forces(&robot), lesson.scene == "pile", "lesson {}", at + 1);
+    }
+    robot.click("Leave");
+    assert!(!shows_forces(&robot));
+}

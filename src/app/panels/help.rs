@@ -2,7 +2,7 @@
 
 use egui::{Align2, RichText, Ui};
 
-const KEYS: [(&str, &str); 16] = [
+const KEYS: [(&str, &str); 17] = [
     ("space", "release, pause, resume"),
     ("→  ←", "one step on, one step back"),
     ("R", "start again; this run is kept"),
@@ -14,6 +14,7 @@ const KEYS: [(&str, &str); 16] = [
     ("S", "save a picture of the scene"),
     ("Ctrl S", "save the session: worlds, record and window"),
     ("Ctrl V", "open a copied link"),
+    ("P", "present: everything twice as large, for a projector"),
     ("H", "this help"),
     ("Tab", "next control"),
     ("Ctrl +  −", "larger and smaller window contents"),

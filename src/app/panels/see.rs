@@ -26,6 +26,25 @@ const COLOURS: [(ColourBy, &str); 5] = [
     (ColourBy::Coordination, "contacts"),
 ];
 
+/// Duration of the GIF that one click saves, s.
+const SHORT_GIF_SECS: f64 = 5.0;
+/// Zoom of a presentation, and the zoom from which a window counts as presenting.
+const PRESENTATION_ZOOM: f32 = 2.0;
+const LEAST_PRESENTATION_ZOOM: f32 = 1.5;
+
+/// Makes text and controls twice as large for a projector, or of their usual size again. A presentation has no room for
+/// pages and plots beside the scene.
+pub(crate) fn present(context: &egui::Context, preferences: &mut Preferences) {
+    let begins = !presents(context);
+    context.set_zoom_factor(if begins { PRESENTATION_ZOOM } else { 1.0 });
+    preferences.plots = !begins;
+    preferences.page = preferences.page.filter(|_| !begins);
+}
+
+fn presents(context: &egui::Context) -> bool {
+    context.zoom_factor() > LEAST_PRESENTATION_ZOOM
+}
+
 pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
     let style = &mut preferences.style;
     ui.horizontal(|ui| {
@@ -65,6 +84,14 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
             (ThemePreference::System, "System"),
         ] {
             ui.selectable_value(&mut preferences.theme, preference, name);
+        }
+        ui.separator();
+        let present_label = ui.selectable_label(presents(ui.ctx()), "Present");
+        if present_label
+            .on_hover_text("Text and controls twice as large, for a projector (P)")
+            .clicked()
+        {
+            present(ui.ctx(), preferences);
         }
     });
 }
@@ -123,12 +150,23 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
             let save = ui.add_enabled(context.run.is_ready() && missing.is_none(), egui::Button::new(name));
             context.note_control(name, save.rect);
             if save.clicked() {
-                save_film(ui.ctx(), context, format);
+                let speed = context.preferences.speed;
+                save_film(ui.ctx(), context, format, speed);
             }
             let save = save.on_hover_text(hint);
             if let Some(missing) = missing {
                 save.on_disabled_hover_text(missing.to_string());
             }
+        }
+        let recorded_from = context.run.world().map_or(0.0, |world| world.recorded_from_secs);
+        let whole = [recorded_from, context.run.frame.recorded_secs()];
+        let [from, until] = context.exports.data.stretch.unwrap_or(whole);
+        let is_possible = context.run.is_ready() && until > from;
+        let hint = "Saves the record, or the interval that is chosen below, as a GIF that lasts 5 s.";
+        let save = ui.add_enabled(is_possible, egui::Button::new("GIF of 5 s"));
+        context.note_control("GIF of 5 s", save.rect);
+        if save.on_hover_text(hint).clicked() {
+            save_film(ui.ctx(), context, FilmFormat::Gif, (until - from) / SHORT_GIF_SECS);
         }
     });
 }
@@ -168,7 +206,7 @@ pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) 
 }
 
 /// Saves the recording of all worlds as a film, within the interval that data exports use.
-fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFormat) {
+fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFormat, speed: f64) {
     // The range of the colour scale is that of all pictures of the film.
     let style = own_style(context.preferences, gui.theme() == egui::Theme::Dark);
     let (size, rate_hz) = (context.preferences.picture_size, context.preferences.video_rate_hz);
@@ -181,7 +219,7 @@ fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFo
         picture: scene_picture(context, style, size, false),
         slumps: context.run.slumps(),
         rate_hz,
-        speed: context.preferences.speed,
+        speed,
         stretch: context.exports.data.stretch,
         folder: context.preferences.folder.clone(),
         stem: context.run.file_stem(),

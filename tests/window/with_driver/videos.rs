@@ -199,3 +199,14 @@ mod with_ffmpeg {
         assert!(told.contains("folder is") && told.contains("can be written to"), "{told}");
     }
 }
+
+#[test]
+#[ignore = "needs a graphics driver"]
+fn one_click_makes_a_gif_that_lasts_five_seconds() {
+    let folder = folder();
+    let mut robot = open(folder.path(), [160, 100]);
+    robot.take_steps(40);
+    let (path, _) = made(&mut robot, "GIF of 5 s");
+    let shown: f64 = pictures(&path).iter().map(shown_ms).sum();
+    assert!((5000.0..5100.0).contains(&shown), "{shown} ms");
+}

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::{Numbering, Other};
 use crate::error::legible;
-use crate::number::{millis_text, rounded_down};
+use crate::number::{self, millis_text, rounded_down};
 use crate::setting::words;
 use crate::sim::advice::{self, Advice};
 use crate::sim::losses::{Losses, NewLosses};
@@ -137,6 +137,7 @@ pub(super) struct Watch {
     /// Smallest overlap since grains were placed, in diameters of the smaller disc of the deepest contact.
     placed_overlap: f64,
     /// Largest distance that a grain has moved in one step, m.
+    #[serde(with = "number")]
     travel: f64,
     /// Number of bonds that have ended because their pairs turned.
     turned_bonds: u64,
