@@ -98,7 +98,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
         }
     }
     if pressed(Key::P) {
-        see::present(context);
+        see::present(context, &mut state.preferences);
     }
     if pressed(Key::H) {
         state.panels.help = !state.panels.help;

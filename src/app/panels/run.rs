@@ -168,7 +168,7 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
 }
 
 /// Width of the name fields, points.
-const NAME_WIDTH: f32 = 84.0;
+const NAME_WIDTH: f32 = 60.0;
 
 /// Shows the earlier runs, if there are any: a button for each, and a box that shows the newest as a ghost.
 pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {

@@ -33,9 +33,13 @@ const SHORT_GIF_SECS: f64 = 5.0;
 const PRESENTATION_ZOOM: f32 = 2.0;
 const LEAST_PRESENTATION_ZOOM: f32 = 1.5;
 
-/// Makes text and controls twice as large for a projector, or of their usual size again.
-pub(crate) fn present(context: &egui::Context) {
-    context.set_zoom_factor(if presents(context) { 1.0 } else { PRESENTATION_ZOOM });
+/// Makes text and controls twice as large for a projector, or of their usual size again. A presentation has no room for
+/// pages and plots beside the scene.
+pub(crate) fn present(context: &egui::Context, preferences: &mut Preferences) {
+    let begins = !presents(context);
+    context.set_zoom_factor(if begins { PRESENTATION_ZOOM } else { 1.0 });
+    preferences.plots = !begins;
+    preferences.page = preferences.page.filter(|_| !begins);
 }
 
 fn presents(context: &egui::Context) -> bool {
@@ -88,7 +92,7 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
             .on_hover_text("Text and controls twice as large, for a projector (P)")
             .clicked()
         {
-            present(ui.ctx());
+            present(ui.ctx(), preferences);
         }
     });
 }

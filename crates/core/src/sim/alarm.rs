@@ -19,8 +19,8 @@ const STEPS_AT_LIMIT: u32 = 100;
 /// errors within a solver's tolerance; with a larger one, discs that unsolved steps let sink go unnoticed for longer.
 const LARGEST_OVERLAP: f64 = 0.05;
 /// Largest travel of a step that excuses an overlap, in the same unit. A contact is detected one step late, so that a
-/// pile that falls overlaps by up to this much (138 grains without cohesion, Δt = 5 ms, six initial states: 0.40 to
-/// 0.62 mean diameters). With a larger value, grains pass through each other without an alarm.
+/// pile that falls overlaps by up to this much (138 grains without cohesion, Δt = 5 ms, six initial states: 0.43 to
+/// 0.56 mean diameters). With a larger value, grains pass through each other without an alarm.
 const LARGEST_TRAVEL: f64 = 0.75;
 /// Growth of an overlap that grains were placed with, in the same unit, that counts as a new overlap. Smaller values
 /// count the errors that a solver's tolerance allows.
