@@ -151,7 +151,7 @@ fn presets(ui: &mut Ui, run: &mut WatchedRun) {
 
 /// The presets that compare methods.
 pub(super) fn method_presets(ui: &mut Ui, run: &mut WatchedRun) {
-    ui.label("Compare")
+    ui.label("Side by side")
         .on_hover_text("Worlds from one initial state, kept at the same simulated time.");
     line_ups(ui, run, &METHOD_LINE_UPS);
 }
