@@ -153,11 +153,11 @@ def draw(rows):
             panel.grid(alpha=0.3)
     # Without cohesion there is one row of panels; the legend has the place of the other.
     panels[1, 0].axis("off")
-    curves = {}
+    handles = {}
     for panel in (panels[0, 1], panels[1, 1]):
-        curves |= dict(zip(*reversed(panel.get_legend_handles_labels())))
+        handles |= dict(zip(*reversed(panel.get_legend_handles_labels())))
     place = {"loc": "center", "bbox_to_anchor": (0.4, 0.5)}
-    panels[1, 0].legend(curves.values(), curves.keys(), fontsize=11, frameon=False, **place)
+    panels[1, 0].legend(handles.values(), handles.keys(), fontsize=11, frameon=False, **place)
     panels[0, 0].set_ylabel("slump after 1 s")
     panels[1, 1].set_ylabel("slump after 1 s")
     panels[1, 1].yaxis.set_tick_params(labelleft=True)

@@ -96,14 +96,13 @@ def main():
     total = len(done) + len(todo)
     workers = int(os.environ.get("WORKERS", os.cpu_count()))
     with concurrent.futures.ProcessPoolExecutor(workers) as pool, open(journal, "a") as file:
-        for future in concurrent.futures.as_completed([pool.submit(result, work, case) for case in todo]):
+        futures = [pool.submit(result, work, case) for case in todo]
+        for number, future in enumerate(concurrent.futures.as_completed(futures), len(done) + 1):
             row = future.result()
             file.write(json.dumps(row) + "\n")
             file.flush()
-            total_done = total - len(todo) + 1
-            todo.pop()
             print(
-                f"{total_done} of {total}: {row['program']} {row['setting']}, {row['state']}, Bond {row['bond']}, "
+                f"{number} of {total}: {row['program']} {row['setting']}, {row['state']}, Bond {row['bond']}, "
                 f"dt {row['dt']:g} s, range {row['range']:g} d: slump {row['slump']:.3f}, {row['cpu_secs']:.1f} s",
                 flush=True,
             )

@@ -21,13 +21,13 @@ fn lines(name: &str) -> Vec<Vec<String>> {
     text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
 
-fn number(text: &String) -> f64 {
+fn number(text: &str) -> f64 {
     text.parse().expect(text)
 }
 
 fn references(name: &str) -> Vec<Reference> {
     let reference = |line: Vec<String>| {
-        let numbers: Vec<f64> = line.iter().map(number).collect();
+        let numbers: Vec<f64> = line.iter().map(|text| number(text)).collect();
         let [x, y, radius, vx, vy, spin, vx_after, vy_after, spin_after] = numbers[..] else {
             panic!("{name}: {line:?}")
         };

@@ -7,8 +7,8 @@
 //!
 //! **Earlier laws of finite range.** The wet law of LMGC90, `IQS_WET_DS_CLB` (its manual, *Contact laws*), applies
 //! Signorini's and Coulomb's laws to R_n + C₀ for every pair whose gap is at most W_thk as the step begins: a
-//! constant pull over a finite range, and the shifted cone. In `xQS_WET_DS_CLB` broken bonds stay broken. Both laws
-//! depend on the gap, pull during the whole step, and do not bounce; `examples/wet_law.rs` is such a law. Here, a
+//! constant pull over a finite range, and the shifted cone. In `xQS_WET_DS_CLB` broken bonds stay broken, and
+//! `RST_WET_CLB` bounces. All depend on the gap and pull during the whole step, as in `examples/wet_law.rs`. Here, a
 //! pair pulls only after it has touched, and the pull depends on its stretch since then; breaking it takes the same
 //! work at every Δt; and collisions bounce.
 //!
