@@ -154,7 +154,7 @@ def draw(rows):
     # Without cohesion there is one row of panels; the legend has the place of the other.
     panels[1, 0].axis("off")
     handles = {}
-    for panel in (panels[0, 1], panels[1, 1]):
+    for panel in panels.flat:
         handles |= dict(zip(*reversed(panel.get_legend_handles_labels())))
     place = {"loc": "center", "bbox_to_anchor": (0.4, 0.5)}
     panels[1, 0].legend(handles.values(), handles.keys(), fontsize=11, frameon=False, **place)
