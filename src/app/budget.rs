@@ -14,8 +14,8 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Settings of the preset in these surroundings. If its solver supports no sheared borders, driven walls or
-    /// rolling friction that are there, uses `nsgs`.
+    /// Settings of the preset in these surroundings. If its solver supports no sheared borders, driven walls,
+    /// rolling friction or materials that are there, uses `nsgs`.
     pub(super) fn among(
         &self,
         surroundings: &Surroundings,
@@ -25,9 +25,11 @@ impl Budget {
         let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
         let is_driven = surroundings.moving.iter().any(|motion| motion.is_driven);
         let rolls = parameters.rolling_friction > 0.0;
+        let may_have_pairs = !surroundings.materials.is_empty();
         if (shears && !info.takes_shear)
             || (is_driven && !info.takes_drives)
             || (rolls && !info.takes_rolling)
+            || (may_have_pairs && !info.takes_pairs)
         {
             return self.settings.by(Method::Nsgs);
         }
