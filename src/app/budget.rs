@@ -118,6 +118,7 @@ pub(super) fn what_to_try(settings: &Settings) -> &'static str {
 mod tests {
     use super::*;
     use crate::scene::built_in;
+    use crate::world::{Material, MaterialPair};
 
     fn surroundings(name: &str) -> std::sync::Arc<Surroundings> {
         let scene = built_in(name).expect("a scene").simulation().expect("a sound scene");
@@ -138,6 +139,15 @@ mod tests {
         let mut rolling = built_in("pile").expect("a scene");
         rolling.parameters.rolling_friction = 0.2;
         scenes.push(rolling);
+        let mut paired = built_in("pile").expect("a scene");
+        let glass = || "glass".to_owned();
+        paired.materials.push(Material { name: glass(), ..Material::default() });
+        paired.pairs.push(MaterialPair {
+            between: [glass(), glass()],
+            friction: Some(0.3),
+            ..MaterialPair::default()
+        });
+        scenes.push(paired);
         for scene in scenes {
             let name = &scene.name;
             let mut run = scene.simulation().expect("a sound scene");
