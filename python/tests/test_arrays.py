@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import pickle
 from typing import Any
 
@@ -317,3 +318,12 @@ def test_a_table_without_rows_has_all_columns() -> None:
     assert sim.observables["contacts"] == 0 and sim.forces.shape == (0, 2)
     for column, kind in TABLES["contacts"].items():
         assert sim.contacts[column].shape == (0,) and np.issubdtype(sim.contacts[column].dtype, kind), column
+
+
+def test_masses_of_a_start_are_used() -> None:
+    start = {"x": [0.0, 0.02], "y": [0.01, 0.01], "radius": [0.0025, 0.0025], "mass": [2.0, 3.0]}
+    assert list(slump.Simulation(initial=start).grains["mass"][:2]) == [2.0, 3.0]
+    del start["mass"]
+    start["density"] = [2.0, 4.0]
+    masses = slump.Simulation(initial=start).grains["mass"]
+    assert masses[1] == 2.0 * masses[0] == pytest.approx(4.0 * math.pi * 0.0025**2)

@@ -82,8 +82,9 @@ STARTS: list[tuple[dict[str, Any], str]] = [
     ({"x": [0.0], "y": [0.0], "radius": [-1.0]}, "initial: row 0: radius is -1, but must be finite and > 0"),
     ({"x": [0], "y": [0], "radius": [1], "kind": ["cube"]}, "initial: row 0: kind is cube, but must be grain or fixed or"),
     ({"x": [0, 1], "y": [0, 1], "radius": [1, 1], "id": [4, 4]}, "initial: row 1: id is 4, but must be another than in"),
-    ({"x": [0, 1], "y": [0, 1], "radius": [1, 1], "mass": [2, 3]}, "initial: row 1: mass is 3 kg, but must be left out or"),
-    ({"x": [0], "y": [0.01], "radius": [0.0025], "mass": [1]}, "kg per m² of a disc, but must be left out or that of the scene"),
+    ({"x": [0], "y": [0], "radius": [1], "mass": [-1]}, "initial: row 0: mass is -1 kg, but must be left out or finite and > 0"),
+    ({"x": [0], "y": [0], "radius": [1], "mass": [1], "density": [2]}, "but must be left out where a mass is given"),
+    ({"x": [0], "y": [0.01], "radius": [0.0025], "material": ["x"]}, "but must be left out where the scene lists no materials"),
     ({"x": [], "y": [], "radius": []}, "initial: holds no disc, but must hold at least one"),
     ({"x": [0, 0], "y": [0, 0], "radius": [0.0025, 0.0025]}, "m from that of grains[0], but must be at least 0.00125 m"),
 ]

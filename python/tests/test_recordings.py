@@ -67,7 +67,7 @@ def test_a_recording_is_that_of_the_command_line(tmp_path: Path) -> None:
             if last[name].any() or name == "name_j":
                 np.testing.assert_array_equal(last[name].to_numpy(), now[name].to_numpy(), err_msg=name)
             else:
-                assert name in ("bond", "stretch"), "this law has none"
+                assert name in ("bond", "stretch", "material"), "this law and scene have none"
     assert list(read(here / "csv" / "steps.csv")) == list(sim.history)
     assert of_moments(read(here / "csv" / "measures.csv")) == list(sim.measures)
     assert list(read(here / "csv" / "histograms.csv")) == list(sim.histograms)

@@ -14,8 +14,8 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Settings of the preset in these surroundings. If its solver supports no sheared borders, driven walls or
-    /// rolling friction that are there, uses `nsgs`.
+    /// Settings of the preset in these surroundings. If its solver supports no sheared borders, driven walls,
+    /// rolling friction or materials that are there, uses `nsgs`.
     pub(super) fn among(
         &self,
         surroundings: &Surroundings,
@@ -25,9 +25,11 @@ impl Budget {
         let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
         let is_driven = surroundings.moving.iter().any(|motion| motion.is_driven);
         let rolls = parameters.rolling_friction > 0.0;
+        let may_have_pairs = !surroundings.materials.is_empty();
         if (shears && !info.takes_shear)
             || (is_driven && !info.takes_drives)
             || (rolls && !info.takes_rolling)
+            || (may_have_pairs && !info.takes_pairs)
         {
             return self.settings.by(Method::Nsgs);
         }
@@ -127,6 +129,7 @@ pub(super) fn what_to_try(settings: &Settings) -> Option<&'static str> {
 mod tests {
     use super::*;
     use crate::scene::built_in;
+    use crate::world::{Material, MaterialPair};
 
     fn surroundings(name: &str) -> std::sync::Arc<Surroundings> {
         let scene = built_in(name).expect("a scene").simulation().expect("a sound scene");
@@ -147,6 +150,15 @@ mod tests {
         let mut rolling = built_in("pile").expect("a scene");
         rolling.parameters.rolling_friction = 0.2;
         scenes.push(rolling);
+        let mut paired = built_in("pile").expect("a scene");
+        let glass = || "glass".to_owned();
+        paired.materials.push(Material { name: glass(), ..Material::default() });
+        paired.pairs.push(MaterialPair {
+            between: [glass(), glass()],
+            friction: Some(0.3),
+            ..MaterialPair::default()
+        });
+        scenes.push(paired);
         for scene in scenes {
             let name = &scene.name;
             let mut run = scene.simulation().expect("a sound scene");

@@ -206,7 +206,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Removes the grain under the mouse, or adds one if there is none.
+    /// Removes the grain under the mouse, or adds one if no grain is there.
     fn change_grains(&self, context: &mut PanelContext<'_>) {
         let Some(at) = self.pointer() else { return };
         context.run.selected = self.index;

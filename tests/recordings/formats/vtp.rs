@@ -199,14 +199,13 @@ fn dumps_say_this() {
     assert!(rest.starts_with(SECOND_HEAD), "{rest}");
     assert_eq!(rest.lines().count(), 9 + 4);
     let contacts = read("contacts.dump");
-    let words =
-        "status: what the laws of contact and friction make of it (0 open, 1 stick, 2 slip)";
+    let words = "status: status under the contact law and friction (0 open, 1 stick, 2 slip)";
     assert!(contacts.contains(&format!("; {words}; ")), "{contacts}");
     after(
         &contacts,
         &format!(
             "ITEM: UNITS\nsi\nITEM: PARAMETERS\nprogram: slump; …\n…\n\
-             grains: id: number of the disc in all frames; fixed discs follow the grains, and grains put in later follow boundaries; type: grain, fixed disc, …\n\
+             grains: id: number of the disc, the same in all frames: grains first, then fixed discs, boundaries, and grains that were added later; type: grain, fixed disc, …\n\
              walls: id: number of the wall; …\n{DUMPED_CONTACTS}"
         ),
     );

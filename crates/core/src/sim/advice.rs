@@ -132,8 +132,10 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
         }
         // With walls driven by a force `auto` stops before the limit, so more sweeps would not help.
         let gives_up = solver.method == Method::Auto;
-        let is_taken = state.physics.friction && parameters.rolling_friction == 0.0;
-        if (stalled || gives_up) && is_taken && parameters.friction > 0.0 {
+        // Of any contact: pairs of materials may have their own.
+        let [friction, rolling] = state.largest_friction(parameters);
+        let is_taken = state.physics.friction && friction > 0.0 && rolling == 0.0;
+        if (stalled || gives_up) && is_taken {
             return Advice::BoundedFriction;
         }
     }
