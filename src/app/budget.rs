@@ -40,9 +40,9 @@ impl Budget {
 /// 40 sweeps on all cores.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
-    hint: "40 sweeps per step, solved or not: about 10 ms for 10,000 grains. Without cohesion, large piles slump \
-           nearly as in solved steps. With cohesion, piles can slump although they would not in solved steps, and \
-           small piles are off by a tenth.",
+    hint: "40 sweeps per step on all cores, solved or not. Without cohesion, large piles slump nearly as in \
+           solved steps. With cohesion, piles can slump although they would not in solved steps, and small piles \
+           are off by a tenth.",
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 

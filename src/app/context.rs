@@ -23,6 +23,10 @@ pub(crate) enum Request {
     Load(Box<Config>),
     /// Open the file of a saved run or of a session.
     LoadSaved(PathBuf),
+    /// Ask for a file to be opened.
+    ChooseFile,
+    /// Ask for the folder of saved files.
+    ChooseFolder,
     /// Show a lesson.
     Visit(usize),
     /// Forget the points of Fig. 5a.

@@ -16,6 +16,7 @@ mod canvas;
 mod context;
 mod curve_pieces;
 mod data_export;
+mod dialogs;
 mod ensemble;
 mod experiment_plot;
 mod exports;

@@ -18,9 +18,10 @@ pub(super) fn millis(secs: f64) -> f64 {
     shifted(&format!("{secs:e}"), 3).unwrap_or(1e3 * secs)
 }
 
-/// A simulated time (s) on a clock, to 0.1 ms.
+/// A simulated time (s) on a clock, to 0.1 ms. A time of hours is short, too.
 pub(super) fn clock_text(secs: f64) -> String {
-    format!("{:.1} ms", 1e3 * secs)
+    let millis = 1e3 * secs;
+    if millis < 1e7 { format!("{millis:.1} ms") } else { format!("{millis:.3e} ms") }
 }
 
 /// A field for a time in seconds, which shows and reads milliseconds.
@@ -88,5 +89,6 @@ mod tests {
         }
         assert_eq!(written(millis(3e-4)), "0.3");
         assert_eq!(clock_text(0.35), "350.0 ms");
+        assert_eq!(clock_text(1e200), "1.000e203 ms");
     }
 }

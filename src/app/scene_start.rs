@@ -46,6 +46,9 @@ fn start_with(
     }
 }
 
+/// Least number of grains of a heap. A pair of discs that touch is none.
+const LEAST_OF_HEAP: usize = 10;
+
 /// True if the grains lie on fixed, level ground and can spread. In other scenes Δy_G, which uses heights above y = 0,
 /// means nothing; nor does it for grains that hang from a fixed disc.
 fn slumps(scene: &Scene) -> bool {
@@ -55,7 +58,8 @@ fn slumps(scene: &Scene) -> bool {
     let lowest_of_grains = scene.grains.iter().map(|grain| grain.position.y).reduce(f64::min);
     let lies_on = |disc: &Disc| lowest_of_grains.is_some_and(|lowest| disc.position.y < lowest);
     let has_ground = !scene.boundaries.is_empty() || scene.fixed_discs.iter().any(lies_on);
-    scene.physics.axes == 2
+    scene.grains.len() >= LEAST_OF_HEAP
+        && scene.physics.axes == 2
         && has_ground
         && is_down
         && scene.gravity_turn.is_none()

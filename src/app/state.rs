@@ -10,12 +10,14 @@ use egui::{Context, Rect};
 
 use super::camera::SceneCamera;
 use super::context::{PanelContext, Request};
+use super::dialogs::{Chosen, FileDialog};
 use super::ensemble::Ensemble;
 use super::experiment_plot::ExperimentSeries;
 use super::exports::Exports;
+use super::file_names::refused_file;
 use super::lessons::LESSONS;
 use super::notice::Notice;
-use super::opening::Opening;
+use super::opening::{Opening, opening_of};
 use super::panels::Panels;
 use super::preferences::{Preferences, StoredWindow};
 use super::session::{Arrangement, arrangement_of, write_session, write_state};
@@ -46,6 +48,7 @@ pub struct AppState {
     pub(crate) restart_graphics: bool,
     notice: Option<Notice>,
     exports: Exports,
+    dialog: FileDialog,
     /// Layout of the panels in a session that is being opened.
     layout: Option<egui::Memory>,
     seen_loads: u64,
@@ -74,6 +77,7 @@ impl AppState {
             restart_graphics: false,
             notice: None,
             exports: Exports::default(),
+            dialog: FileDialog::default(),
             layout: None,
             seen_loads: 0,
             seen_refusal: None,
@@ -106,6 +110,8 @@ impl AppState {
         match request {
             Request::Load(config) => self.load(*config),
             Request::LoadSaved(path) => self.load_saved(&path),
+            Request::ChooseFile => self.dialog.ask_for_file(context, &self.preferences.folder),
+            Request::ChooseFolder => self.dialog.ask_for_folder(context, &self.preferences.folder),
             Request::Visit(at) => self.visit(at),
             Request::ForgetReleased => self.ensemble.forget_released(),
             Request::LeaveLessons => self.leave_lessons(),
@@ -145,6 +151,12 @@ impl AppState {
         self.experiment.follow(&self.run.frame);
         if let Some(notice) = self.exports.follow(context) {
             self.notice = Some(notice);
+        }
+        match self.dialog.answer() {
+            Some(Ok(Chosen::File(path))) => self.open_file(&path),
+            Some(Ok(Chosen::Folder(path))) => self.preferences.folder = path,
+            Some(Err(error)) => self.warn(error.to_string()),
+            None => {}
         }
         self.ensemble.follow(context, &self.run.frame, self.preferences.ensemble);
     }
@@ -194,6 +206,15 @@ impl AppState {
     pub fn load_saved(&mut self, path: &Path) {
         self.exports.data.saved_run = path.display().to_string();
         self.open(Opening::File(path.to_owned()));
+    }
+
+    /// Opens a file of any kind that can be opened.
+    pub(super) fn open_file(&mut self, path: &Path) {
+        match opening_of(path) {
+            Some(Opening::File(path)) => self.load_saved(&path),
+            Some(opening) => self.open(opening),
+            None => self.warn(refused_file(path)),
+        }
     }
 
     /// Sends the opening to the solver thread. Leaves the lessons unless a lesson is opened.

@@ -3,9 +3,8 @@
 use egui::{Context, Event, Key, Modifiers, Ui};
 
 use super::IN_BROWSER;
-use super::file_names::refused_file;
 use super::link::{RunLink, is_link};
-use super::opening::{Opening, opening_of};
+use super::opening::Opening;
 use super::panels::{front, see};
 use super::state::AppState;
 use crate::live::Command;
@@ -30,12 +29,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
 fn take_dropped_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
     let Some(file) = dropped.filter(|_| !IN_BROWSER) else { return };
-    let path = file.path();
-    match opening_of(path) {
-        Some(Opening::File(path)) => state.load_saved(&path),
-        Some(opening) => state.open(opening),
-        None => state.warn(refused_file(path)),
-    }
+    state.open_file(file.path());
 }
 
 /// Acts on the keys of this frame.

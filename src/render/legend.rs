@@ -213,7 +213,10 @@ impl Legend {
         let widest = format!("full width:\n{} {prefix}N", decimal(value, step));
         let note = TextBlock::wrapped(&widest, &self.text(), largest as f32);
         let mut y = bottom - i64::from(note.height());
-        note.draw(strip, self.em(0.4), y, Align::Start, Align::Start);
+        // Before the first step no force is known.
+        if reference > 0.0 {
+            note.draw(strip, self.em(0.4), y, Align::Start, Align::Start);
+        }
         for (name, colour) in [("pull", self.palette.pull), ("push", self.palette.push)] {
             y -= self.em(1.5);
             let middle = y + self.em(0.75);

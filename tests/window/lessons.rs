@@ -88,15 +88,10 @@ fn the_pile_that_is_shown_does_what_the_lesson_says() {
         let slumps: Vec<f64> = rows.iter().map(|row| row.slump).collect();
         for Claim { worlds: [more, less], between: [low, high], .. } in claims {
             let difference = slumps[*more] - slumps[*less];
-            // One pile may be off the mean of many; its numbers are shown.
-            let within = (low - SCATTER)..(high + SCATTER);
-            assert!(within.contains(&difference), "{title}: {slumps:?}");
+            assert!((*low..*high).contains(&difference), "{title}: {slumps:?}");
         }
     }
 }
-
-/// Part of a difference that may be due to the one pile that is shown.
-const SCATTER: f64 = 0.05;
 
 /// Number of the sixteen piles that must give the answer of the lesson.
 const MOST: usize = 9;
@@ -158,7 +153,7 @@ fn a_smaller_time_step_moves_nothing_of_a_pile_that_stands() {
     assert_eq!(right_answer(lesson, &[before, *run.observables()]), lesson_answer(lesson.title));
     // Used from the start, the same time step makes another pile.
     let [small, large] = slumps(&LESSONS[0], None)[..] else { panic!("two worlds") };
-    assert!(large == stood && small > stood + 0.05, "{small}, {large}, {stood}");
+    assert!(large == stood && small > stood + 0.1, "{small}, {large}, {stood}");
 }
 
 #[test]

@@ -11,6 +11,7 @@
 
 mod alarms;
 mod controls;
+mod dialogs;
 mod exports;
 mod front;
 mod hand;

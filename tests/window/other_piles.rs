@@ -119,7 +119,7 @@ fn released_piles_leave_a_point_each_though_the_next_is_released_before_their_ot
     robot.send(Command::Play);
     robot.until("a step", |state| state.run.frame.recorded_secs() > 0.0);
     assert!(!robot.state().controls.contains_key("clear figure"), "nothing tells its end before");
-    robot.type_number("Δt, time step", "2e-3");
+    robot.type_number("Δt, time step", "2");
     robot.until("the end", |state| !state.run.frame.playing);
     let begun = Instant::now();
     let points = loop {

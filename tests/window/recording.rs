@@ -12,7 +12,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     let mut robot = Robot::open(pile());
     for step in 0..90 {
         if step == 30 {
-            robot.type_number("Δt, time step", "2e-3");
+            robot.type_number("Δt, time step", "2");
         }
         if step == 50 {
             robot.type_number("Bond", "80");
@@ -76,7 +76,7 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     robot.take_steps(50);
     let curve = curve_of(&robot);
     robot.seek(0.02);
-    robot.type_number("Δt, time step", "5e-3");
+    robot.type_number("Δt, time step", "5");
     assert!(robot.state().run.frame.branching);
     robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.steps(), 21);

@@ -228,7 +228,7 @@ fn an_earlier_moment_is_saved_as_it_was() {
     let folder = folder();
     let mut robot = Robot::open_in(folder.path(), pile());
     robot.take_steps(30);
-    robot.type_number("Δt, time step", "2e-3");
+    robot.type_number("Δt, time step", "2");
     robot.take_steps(20);
     let then = saved(&mut robot);
     let at_secs = robot.state().run.frame.time_secs();

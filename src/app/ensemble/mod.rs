@@ -268,7 +268,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
         (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
         (None, _) if count > 0 => "other piles end earlier".into(),
         (None, Some((number, _))) => {
-            format!("other piles: rain {number} of {}", summary.seeds.len())
+            format!("other piles: making pile {number} of {}", summary.seeds.len())
         }
         (None, None) => "other piles are being computed".into(),
     }
@@ -319,7 +319,7 @@ mod tests {
         assert_eq!(said(&told(&[0.2, 0.3, 0.4], None), 1.0), "other piles 0.30 ± 0.25 (n = 3)");
         assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
         assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
-        assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: rain 2 of 3");
+        assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: making pile 2 of 3");
         assert_eq!(said(&told(&[], None), 0.0), "other piles are being computed");
         assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");
     }

@@ -227,10 +227,10 @@ mod tests {
     #[test]
     fn titles_say_what_differs_and_are_never_alike_where_anything_does() {
         let base = Settings::default().with_bond(20.0).over(1e-3);
-        assert_eq!(titles(&[base, base]), ["Bond 20, Δt 1e-3 s"; 2]);
-        assert_eq!(titles(&[base, base.over(5e-3)]), ["Δt 1e-3 s", "Δt 5e-3 s"]);
+        assert_eq!(titles(&[base, base]), ["Bond 20, Δt 1 ms"; 2]);
+        assert_eq!(titles(&[base, base.over(5e-3)]), ["Δt 1 ms", "Δt 5 ms"]);
         let range = stepped(base, Stepper::Range);
-        assert_eq!(titles(&[base, range.over(1e-4)]), ["moreau, Δt 1e-3 s", "range, Δt 1e-4 s"]);
+        assert_eq!(titles(&[base, range.over(1e-4)]), ["moreau, Δt 1 ms", "range, Δt 0.1 ms"]);
         let few = SolverSettings { method: Method::Nsgs, max_sweeps: 5, ..SolverSettings::PAPER };
         let few = Settings { solver: few, ..base };
         assert_eq!(titles(&[few, base]), ["nsgs, 5 sweeps", "Solved"]);

@@ -59,6 +59,9 @@ fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
                     the window.";
         let label = ui.label("Saved").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if super::see::choose_button(ui, "Choose a file") {
+                context.ask(Request::ChooseFile);
+            }
             let is_named = !context.exports.data.saved_run.trim().is_empty();
             let open = ui.add_enabled(is_named, Button::new("Open"));
             let open = open.on_hover_text("Continue that run or session in place of the present one.");

@@ -4,6 +4,7 @@
 #![deny(dead_code, reason = "a panel that nothing shows would not be missed")]
 
 mod alarms;
+mod breaking;
 mod compare;
 mod data;
 mod distributions;

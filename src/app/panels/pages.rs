@@ -60,7 +60,7 @@ impl Pages {
             Page::Look => see::look(ui, context.preferences),
             Page::Save => {
                 if !IN_BROWSER {
-                    see::folder(ui, &mut context.preferences.folder);
+                    see::folder(ui, context);
                 }
                 see::pictures(ui, context);
                 ui.separator();

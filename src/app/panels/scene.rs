@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
 
+use super::breaking::BreakingBonds;
 use super::grabbing::{Grabbing, WorldCell};
 use super::scene_style::{columns, shared_style};
 use crate::app::context::PanelContext;
@@ -26,6 +27,8 @@ pub struct ScenePanel {
     /// The grain or the wall that the mouse holds.
     pub mouse: Grabbing,
     pub(crate) legend: LegendCache,
+    /// Per world.
+    breaking: Vec<BreakingBonds>,
 }
 
 impl ScenePanel {
@@ -59,6 +62,7 @@ impl ScenePanel {
         let strip = style.legend_width(width, height) as f32 / pixels_per_point;
         let (scenes, legend_area) = area.split_left_right_at_x(area.right() - strip);
         let bare = Style { legend: false, ..style.clone() };
+        self.breaking.resize_with(context.run.frame.worlds.len(), BreakingBonds::default);
         for (index, cell) in cells(scenes, context.run.frame.worlds.len()).into_iter().enumerate() {
             self.world(ui, context, index, cell, &bare, pixels(cell));
         }
@@ -99,6 +103,10 @@ impl ScenePanel {
         let place = WorldCell { camera, ..place };
         let picture = scene_picture(&frame.snapshot, style, &camera, size[0], size[1]);
         ui.painter().with_clip_rect(cell).add(scene_callback(index, cell, picture));
+        if style.show_forces {
+            let colour = theme::color32(style.theme.palette().pull);
+            self.breaking[index].show(ui, context.run.frame.loads, &place, colour);
+        }
         place.ghost(ui, context);
         place.words(ui, context, style, size);
         paint_gravity(ui, context, index, cell);

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::scene_style::{columns, own_style, shared_style};
 use crate::app::IN_BROWSER;
-use crate::app::context::PanelContext;
+use crate::app::context::{PanelContext, Request};
 use crate::app::file_names::free_path;
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::preferences::Preferences;
@@ -173,13 +173,29 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
 }
 
 /// Shows the field for the folder of all files.
-pub(super) fn folder(ui: &mut Ui, folder: &mut PathBuf) {
-    ui.horizontal(|ui| {
+pub(super) fn folder(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let folder = &mut context.preferences.folder;
+    let row = ui.horizontal(|ui| {
         let whole = std::path::absolute(&*folder).unwrap_or_else(|_| folder.clone());
         let hint = format!("Folder of saved files: {}", whole.display());
         let label = ui.label("Folder").on_hover_text(hint);
-        path_field(ui, folder, label.id);
+        let right = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let is_asked = choose_button(ui, "Choose a folder");
+            path_field(ui, folder, label.id);
+            is_asked
+        });
+        right.inner
     });
+    if row.inner {
+        context.ask(Request::ChooseFolder);
+    }
+}
+
+/// Shows a button that opens a dialog. Returns true if it was clicked.
+pub(super) fn choose_button(ui: &mut Ui, name: &str) -> bool {
+    let button = ui.button("…").on_hover_text(name);
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+    button.clicked()
 }
 
 /// Shows a field for a folder.

@@ -1,0 +1,74 @@
+//! Dialogs of the desktop that choose a file or a folder. They run on a thread of their own, so that the run continues.
+
+use std::path::{Path, PathBuf};
+
+use super::work::{Work, outcome_of_ended};
+use crate::error::Result;
+
+/// The choice of the user.
+pub(crate) enum Chosen {
+    /// A file to be opened.
+    File(PathBuf),
+    /// The folder of saved files.
+    Folder(PathBuf),
+}
+
+/// The dialog that waits for an answer; there is at most one.
+#[derive(Default)]
+pub(crate) struct FileDialog {
+    waiting: Option<Work<Option<Chosen>>>,
+}
+
+impl FileDialog {
+    /// Asks for a file to be opened. The dialog begins in `folder`.
+    pub(super) fn ask_for_file(&mut self, context: &egui::Context, folder: &Path) {
+        self.ask(context, folder, true);
+    }
+
+    /// Asks for the folder of saved files. The dialog begins in `folder`.
+    pub(super) fn ask_for_folder(&mut self, context: &egui::Context, folder: &Path) {
+        self.ask(context, folder, false);
+    }
+
+    fn ask(&mut self, context: &egui::Context, folder: &Path, for_file: bool) {
+        if self.waiting.is_some() {
+            return;
+        }
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        let runs = Vec::<std::sync::mpsc::Receiver<()>>::new();
+        self.waiting = Some(Work::start(context, runs, move |_, _| choose(&folder, for_file)));
+    }
+
+    /// The answer of a dialog that has ended; nothing if it was cancelled.
+    pub(super) fn answer(&mut self) -> Option<Result<Chosen>> {
+        outcome_of_ended(&mut self.waiting)?.transpose()
+    }
+}
+
+/// A browser has no such dialogs: files are dropped on the page, and saved files are downloads.
+#[cfg(target_arch = "wasm32")]
+fn choose(_: &Path, _: bool) -> Result<Option<Chosen>> {
+    Ok(None)
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn choose(folder: &Path, for_file: bool) -> Result<Option<Chosen>> {
+    use super::file_names::{SESSION_ENDING, STATE_ENDING};
+
+    // A dialog that ends sooner was not shown: nobody reads it and cancels in this time.
+    const SHORTEST: std::time::Duration = std::time::Duration::from_millis(100);
+    let began = crate::Instant::now();
+    let dialog = rfd::FileDialog::new().set_directory(folder);
+    let chosen = if for_file {
+        let dialog = dialog.set_title("Open a scene, discs, a saved run or a session");
+        let endings = [STATE_ENDING, SESSION_ENDING, "toml", "csv"];
+        dialog.add_filter("Slump", &endings).pick_file().map(Chosen::File)
+    } else {
+        dialog.set_title("Folder of saved files").pick_folder().map(Chosen::Folder)
+    };
+    if chosen.is_none() && began.elapsed() < SHORTEST {
+        let needed = "shown by xdg-desktop-portal or zenity: install one of them, or type the path";
+        return Err(crate::error::Error::value("dialog", "not shown", needed));
+    }
+    Ok(chosen)
+}
