@@ -25,7 +25,7 @@ const KEYFRAME_BYTES: usize = 8 << 20;
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
 /// Largest number of rows per curve in a history that is handed out; a row is about 500 bytes in a file.
 const ROWS: usize = 4096;
-const PAST_ROWS: usize = 128;
+const PAST_ROWS: usize = 512;
 /// Time after which a tick pauses for commands. A world whose time step is far shorter than the leader's takes
 /// thousands of steps per step of the leader.
 const SLICE: Duration = Duration::from_millis(50);

@@ -141,7 +141,7 @@ fn somebody_without_a_plan_breaks_nothing() {
 
 /// Runs one pile to its end repeatedly. Prints the memory after a few runs and after many.
 #[test]
-#[ignore = "part of the_twentieth_run_needs_no_more_memory_than_the_sixth, which starts it in a process of its own"]
+#[ignore = "part of an_earlier_run_that_is_kept_needs_little_memory, which starts it in a process of its own"]
 fn twenty_runs() {
     let mut robot = Robot::open(pile());
     robot.send(Command::SetPace(Pace::Max));
@@ -155,12 +155,13 @@ fn twenty_runs() {
         after.push(resident_mib());
     }
     println!("MiB after each: {after:?}");
-    let grown = after[19].saturating_sub(after[5]);
-    assert!(after[5] > 10 && grown < 16, "{after:?}");
+    // Each run that can be called up again needs about 1.2 MiB: its beginning, its end and 512 rows.
+    let per_run = after[19].saturating_sub(after[5]) as f64 / 14.0;
+    assert!(after[5] > 10 && per_run < 1.5, "{after:?}");
 }
 
 #[test]
-fn the_twentieth_run_needs_no_more_memory_than_the_sixth() {
+fn an_earlier_run_that_is_kept_needs_little_memory() {
     let itself = std::env::current_exe().expect("a program");
     let only = ["--ignored", "--exact", "monkey::twenty_runs", "--nocapture"];
     let output = std::process::Command::new(itself).args(only).output().expect("it starts");

@@ -183,9 +183,11 @@ impl WorldCell<'_> {
                 let font = FontId::proportional(11.0);
                 painter.text(below, Align2::LEFT_CENTER, others, font, ink);
             }
-            let slump = context.run.slump_text(self.index);
-            let at = self.cell.right_bottom() - egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
-            painter.text(at, Align2::RIGHT_CENTER, slump, FontId::monospace(12.0), ink);
+            if context.run.slumps() {
+                let slump = context.run.slump_text(self.index);
+                let at = self.cell.right_bottom() - egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
+                painter.text(at, Align2::RIGHT_CENTER, slump, FontId::monospace(12.0), ink);
+            }
             let stroke = match self.index == context.run.selected {
                 true => Stroke::new(2.0, colour),
                 false => Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color),
