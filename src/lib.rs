@@ -40,7 +40,9 @@ pub use slump_data::{config, data, granular, interchange};
 #[doc(hidden)]
 pub use slump_studies as study;
 
-use slump_core::{number, threads};
+#[cfg(feature = "panels")]
+use slump_core::number;
+use slump_core::threads;
 use slump_data::output;
 
 /// The version, with the commit if it is known.

@@ -145,10 +145,9 @@ impl ExperimentSeries {
             if let Some(last) = world.curve.last() {
                 values.split_off(&(last.step + 1));
             }
-            if !values.contains_key(&row.step) {
-                let value = (quantity.of)(&start.scene, &world.snapshot);
-                values.insert(row.step, [row.time_secs, value]);
-            }
+            values
+                .entry(row.step)
+                .or_insert_with(|| [row.time_secs, (quantity.of)(&start.scene, &world.snapshot)]);
         }
     }
 
