@@ -184,7 +184,7 @@ impl ExperimentSeries {
         let values = worlds.iter().flatten().map(|point| point[1]);
         let least = [[0.0, start.scene.duration_secs], with_room(values, false)];
         let height = (ui.available_height() - 2.0).max(40.0);
-        let plot = plot_with_axes(ui, "experiment", height, [false, false], " s");
+        let plot = plot_with_axes(ui, "experiment", height, [false, false], " ms");
         let dark = ui.visuals().dark_mode;
         with_least(plot, least).show(ui, |plot| {
             plot.vline(VLine::new("now", frame.time_secs()).color(Color32::GRAY).width(1.0));

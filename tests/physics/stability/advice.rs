@@ -97,7 +97,7 @@ fn a_contact_that_is_found_late_is_no_alarm_and_a_step_that_is_too_long_is() {
         assert!(deepest > 0.05, "Bond {bond}, {time_step_secs} s: {deepest}");
         assert_eq!(run.alarms(), [], "Bond {bond}, {time_step_secs} s");
     }
-    assert_eq!(kinds(&pile(20.0, 2e-2), 20), [AlarmKind::Overlap]);
+    assert_eq!(kinds(&pile(20.0, 2e-2), 20)[0], AlarmKind::Overlap);
 }
 
 #[test]
@@ -249,12 +249,13 @@ fn a_small_grain_is_as_deep_as_its_own_size_says() {
     assert_eq!(run.observables().lost_grains, 1);
     scene.parameters.time_step_secs = 1e-4;
     assert_eq!(kinds(&scene, 10_000), []);
-    // Half of its diameter also counts as an overlap.
+    // It falls by half of its diameter in a step: an overlap of a quarter is a contact that was found late.
     scene.parameters.time_step_secs = 1e-2;
     scene.grains[1].velocity = at(0.0, -1.0);
     scene.grains[1].position.y = 0.0149;
-    assert_eq!(kinds(&scene, 1), []);
-    assert_eq!(kinds(&scene, 3), [AlarmKind::Overlap]);
+    let run = after(&scene, 1);
+    assert!((0.003..0.006).contains(&run.place(1).y), "the situation: {}", run.place(1));
+    assert_eq!(kinds(&scene, 3), []);
 }
 
 #[test]
