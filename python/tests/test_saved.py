@@ -155,8 +155,9 @@ def test_what_cannot_be_saved_is_told_and_leaves_what_is_there(tmp_path: Path) -
 
 def test_what_was_warned_of_before_is_not_warned_of_again(tmp_path: Path) -> None:
     sim = slump.Simulation("pile", bond=20, dt=2e-2)
-    with pytest.warns(slump.SlumpWarning, match="overlaps by more than one step's travel"):
+    with pytest.warns(slump.SlumpWarning) as told:
         sim.step(20)
+    assert "overlaps by more than one step's travel" in str(told[0].message)
     sim.save(tmp_path / "run.slump")
     other = slump.Simulation(restart=tmp_path / "run.slump")
     assert other.alarms == sim.alarms != []
