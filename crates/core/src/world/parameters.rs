@@ -165,6 +165,7 @@ settings! {
                 unit: "d",
                 hint: "Largest gap at which grains touch, and cohere if they have cohesion, in mean diameters.",
                 range: [0.0, 0.1],
+                logarithmic: true,
                 ..Control::PLAIN
             }),
         }
