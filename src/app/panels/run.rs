@@ -10,7 +10,7 @@ use crate::app::titles::title_among;
 use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
-use crate::scene::{Deposition, NewPile, SCENES};
+use crate::scene::{Deposition, NewPile, SCENES, Sizes};
 
 /// Largest number of grains that the panel offers. The command line takes more.
 const MOST_GRAINS: usize = 20_000;
@@ -153,13 +153,14 @@ fn cost(grains: usize) -> String {
 /// Configuration of a new pile with the present settings.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     let config = run.config();
-    let &NewPile { grains, seed, box_width_in_diameters, deposition } = pile;
+    let NewPile { grains, seed, box_width_in_diameters, deposition, sizes } = pile.clone();
     let source = SceneSource {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
         grains: Some(grains),
         seed: Some(seed),
         box_width: Some(box_width_in_diameters),
         deposition: (deposition != Deposition::default()).then_some(deposition),
+        sizes: (sizes != Sizes::default()).then_some(sizes),
         initial: None,
         ..config.source
     };

@@ -1,6 +1,8 @@
 //! Piles made by drop and roll: final places of single discs, properties of all packings, and settled piles that stay
 //! at rest.
 
+mod sizes;
+
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -194,7 +196,7 @@ const DIAMETER: f64 = 5e-3;
 
 fn pile(grains: usize, width: f64, seed: u64) -> NewPile {
     let deposition = Deposition::DropAndRoll;
-    NewPile { grains, box_width_in_diameters: width, seed, deposition }
+    NewPile { grains, box_width_in_diameters: width, seed, deposition, ..NewPile::default() }
 }
 
 fn walled(grains: Vec<Grain>, width: f64) -> Scene {
