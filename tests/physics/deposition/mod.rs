@@ -1,8 +1,6 @@
 //! Piles made by drop and roll: final places of single discs, properties of all packings, and settled piles that stay
 //! at rest.
 
-mod sizes;
-
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;

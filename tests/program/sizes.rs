@@ -3,7 +3,7 @@
 use slump::config::{Config, read_scene};
 use slump::scene::{Deposition, NewPile, Sizes, settle, start_of};
 
-use crate::common::*;
+use crate::program::*;
 
 const DIAMETER: f64 = 5e-3;
 /// Standard errors by which a sample moment may differ from the exact one: of 30 comparisons of a correct program, one
