@@ -241,7 +241,13 @@ fn measured(argument: &str) -> Result<Vec<String>> {
     let steps: Vec<u64> = field().split(',').filter_map(|step| step.parse().ok()).collect();
     let width = (1.35 * (grains as f64).sqrt()).round();
     let deposition = Deposition::DropAndRoll;
-    let pile = NewPile { grains, box_width_in_diameters: width, seed: 1, deposition };
+    let pile = NewPile {
+        grains,
+        box_width_in_diameters: width,
+        seed: 1,
+        deposition,
+        ..NewPile::default()
+    };
     let mut scene = pile_of(settle(&pile, |_| true)?, width)?;
     scene.parameters.bond = bond;
     scene.parameters.time_step_secs = 1e-3;

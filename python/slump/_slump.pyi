@@ -131,6 +131,7 @@ class _Options(_Changes, total=False):
     base_width: _Float | None
     seed: _Int | None
     deposition: Literal["rain", "drop-and-roll"] | None
+    sizes: str | None
     start: _Float | None
     preset: Literal["paper", "robust"] | None
     duration: _Float | None

@@ -154,7 +154,7 @@ def test_a_scene_that_is_none_is_told(change: dict[str, Any], sentence: str) -> 
 
 
 def test_a_scene_that_is_given_has_no_other_start() -> None:
-    with pytest.raises(slump.InputError, match="scene is a dictionary, but must be pile where grains, box-width, seed or deposition are given"):
+    with pytest.raises(slump.InputError, match="scene is a dictionary, but must be pile where grains, box-width, seed, deposition or sizes are given"):
         slump.Simulation(slump.scene("pile"), grains=20)
 
 

@@ -25,7 +25,7 @@ use crate::output::{
     lost_stdout, note_line, note_printed, print_line, print_text, resolved, warn_of_steps,
     write_file,
 };
-use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, Sizes, deposit};
 use crate::sim::Stepper;
 use crate::solver::{
     FrictionModel, METHODS, Method, SolutionSearch, SolveProgress, SolverSettings, StopTest,
@@ -72,6 +72,9 @@ enum CliCommand {
         /// Deposition: the way to place the grains
         #[arg(long, value_name = "WAY", default_value_t, value_parser = parser_of::<Deposition>())]
         deposition: Deposition,
+        /// Distribution of the diameters, with mean d: uniform:S (within d(1 ± S)), normal:S and lognormal:S (standard deviation S, cut off at 2.5 S), bidisperse:RATIO,FRACTION (number fraction of the large grains), or sieves:DIAMETER=FRACTION,… (mass fraction that passes)
+        #[arg(long, default_value_t)]
+        sizes: Sizes,
         /// The file to write
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
@@ -178,10 +181,18 @@ fn run(cli: Cli) -> Result<()> {
         Some(CliCommand::Run { config, headless }) => {
             crate::headless::run(&config, &HeadlessOptions { headless: true, ..*headless })
         }
-        Some(CliCommand::Generate { grains, box_width, seed, deposition, out, overwrite }) => {
+        Some(CliCommand::Generate {
+            grains,
+            box_width,
+            seed,
+            deposition,
+            sizes,
+            out,
+            overwrite,
+        }) => {
             let box_width_in_diameters = box_width;
             check_new_file("out", &out, overwrite)?;
-            generate(&NewPile { grains, box_width_in_diameters, seed, deposition }, &out)
+            generate(&NewPile { grains, box_width_in_diameters, seed, deposition, sizes }, &out)
         }
         Some(CliCommand::List { what }) => {
             Listed::value_variants()
@@ -275,8 +286,13 @@ fn generate(pile: &NewPile, out: &Path) -> Result<()> {
         "At rest: kinetic energy {kinetic_energy:.1e} m g d a grain, overlap {mean_overlap:.1e} d in the \
              mean and {max_overlap:.1e} d at most."
     );
-    let NewPile { grains: count, box_width_in_diameters: width, seed, deposition } = pile;
-    let command = format!("slump generate --grains {count} --box-width {width} --seed {seed}");
+    let NewPile { grains: count, box_width_in_diameters: width, seed, deposition, sizes } = pile;
+    let sized = match *sizes == Sizes::default() {
+        true => String::new(),
+        false => format!(" --sizes {sizes}"),
+    };
+    let command =
+        format!("slump generate --grains {count} --box-width {width} --seed {seed}{sized}");
     let comment = match deposition {
         // The shipped state has only these lines.
         Deposition::Rain => format!(

@@ -1,4 +1,4 @@
-//! Commands of studies: `sweep`, `budget`, `reproduce`, `chart`, `stability` and `validate`.
+//! Commands of studies: `sweep`, `budget`, `calibrate`, `reproduce`, `chart`, `stability` and `validate`.
 
 use std::path::{Path, PathBuf};
 
@@ -17,8 +17,9 @@ use crate::study::stability::{
     CHALLENGES, Challenge, StabilityTable, count_of_maps, maps, picture,
 };
 use crate::study::{
-    BudgetOptions, ChartOptions, RunsTable, Shard, Study, SweepOptions, ValidateOptions, budget,
-    chart_speed, figure_names, merge, reproduce, sweep, validate, write_means,
+    BudgetOptions, CalibrateOptions, ChartOptions, RunsTable, Shard, Study, SweepOptions,
+    ValidateOptions, budget, calibrate, chart_speed, figure_names, merge, reproduce, sweep,
+    validate, write_means,
 };
 use crate::threads::make_threads;
 
@@ -74,6 +75,33 @@ pub(super) enum StudyCommand {
         shard: Option<String>,
         /// Folder for report, picture and tables; the same command continues where it stopped
         #[arg(long, value_name = "DIR", help_heading = "Budget")]
+        out: PathBuf,
+    },
+    /// Find the parameters with which a scene reproduces measured values
+    Calibrate {
+        #[command(flatten)]
+        config: Box<Config>,
+        /// Measured value with its standard error, as in slump=0.35±0.02 (or 0.35+-0.02), at the end of the run: a quantity of `slump budget`, also repose_angle (degrees) and run_out (m); can be given several times
+        #[arg(
+            long = "target",
+            value_name = "X=VALUE±ERROR",
+            help_heading = "Calibration",
+            required = true
+        )]
+        targets: Vec<String>,
+        /// Parameter with its range, as in bond=0..50; can be given up to four times
+        #[arg(
+            long,
+            value_name = "SETTING=FROM..TO",
+            help_heading = "Calibration",
+            required = true
+        )]
+        vary: Vec<String>,
+        /// Number of runs, each with another initial state [default: 40, 100, 200 or 350 for 1 to 4 parameters]
+        #[arg(long, value_name = "N", help_heading = "Calibration")]
+        runs: Option<usize>,
+        /// Folder for report, picture and numbers; the same command continues where it stopped
+        #[arg(long, value_name = "DIR", help_heading = "Calibration")]
         out: PathBuf,
     },
     /// Compute the figures of the paper, and the maps that its conclusion asks for
@@ -189,6 +217,10 @@ impl StudyCommand {
                     shard,
                 };
                 budget(&options, &out).map(drop)
+            }
+            Self::Calibrate { config, targets, vary, runs, out } => {
+                calibrate(&CalibrateOptions { config: *config, targets, vary, runs }, &out)
+                    .map(drop)
             }
             Self::Reproduce { figures, out, quick } => {
                 reproduce(&figures, &out, quick, VERSION, draw_snapshots)

@@ -7,6 +7,7 @@ mod probed;
 #[path = "../common/program.rs"]
 mod program;
 
+mod calibration;
 mod command_line;
 mod documents;
 mod error_budget;
@@ -18,6 +19,7 @@ mod machine_limits;
 mod output_places;
 mod restart;
 mod scene_errors;
+mod sizes;
 mod stopped_runs;
 mod study_sweep;
 mod video;

@@ -1,5 +1,5 @@
 //! Runs of scenes: single runs with snapshots, the sets of runs in the paper's figures, sweeps over parameters, error
-//! budgets, speed charts, stability tests and validation experiments.
+//! budgets, calibrations, speed charts, stability tests and validation experiments.
 
 #![warn(missing_docs, unreachable_pub)]
 // These macros panic if a stream is closed or full; `output` has functions that do not.
@@ -9,6 +9,7 @@ use slump_core::{contact, error, number, scene, setting, sim, solver, world};
 use slump_data::{column_spec, config, data, granular, input, output};
 
 mod budget;
+mod calibrate;
 pub mod chart;
 mod figures;
 mod fracture_work;
@@ -26,6 +27,7 @@ mod validate;
 pub use budget::{
     BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust, budget, made as made_budget,
 };
+pub use calibrate::{CalibrateOptions, Region, calibrate};
 pub use figures::{figure_names, reproduce};
 pub use harness::Shard;
 pub use paper::{

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::config::{Config, parse_discs, write_discs};
 use crate::error::{Error, Result};
-use crate::harness::journal::{sealed_text, text_of};
+use crate::harness::journal::{checksum, sealed_text, text_of};
 use crate::output::{Progress, check_writable, note_line, write_file};
 use crate::scene::{Deposition, NewPile, Scene, Settling, settle};
 use crate::world::Grain;
@@ -96,13 +96,18 @@ fn read(path: &Path) -> Result<Option<Vec<Grain>>> {
 }
 
 fn name(pile: &NewPile) -> String {
-    let NewPile { grains, box_width_in_diameters, seed, deposition } = pile;
+    let NewPile { grains, box_width_in_diameters, seed, deposition, sizes } = pile;
     let deposited = match deposition {
         Deposition::Rain => "",
         Deposition::DropAndRoll => "_drop-and-roll",
     };
+    // Tables of sieves are too long for a name.
+    let sized = match sizes == &NewPile::default().sizes {
+        true => String::new(),
+        false => format!("_sizes-{}", checksum(sizes.to_string().as_bytes())),
+    };
     format!(
-        "pile_{grains}_width{box_width_in_diameters}_seed{seed}{deposited}_v{}",
+        "pile_{grains}_width{box_width_in_diameters}_seed{seed}{deposited}{sized}_v{}",
         env!("CARGO_PKG_VERSION")
     )
 }

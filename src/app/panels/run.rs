@@ -11,7 +11,7 @@ use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
 use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
-use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Sizes};
 
 /// Scenes that are made to break methods are for experts (the page Law, solver).
 const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiments];
@@ -150,13 +150,14 @@ fn cost(grains: usize) -> String {
 /// Configuration of a new pile with the present settings.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     let config = run.config();
-    let &NewPile { grains, seed, box_width_in_diameters, deposition } = pile;
+    let NewPile { grains, seed, box_width_in_diameters, deposition, sizes } = pile.clone();
     let source = SceneSource {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
         grains: Some(grains),
         seed: Some(seed),
         box_width: Some(box_width_in_diameters),
         deposition: (deposition != Deposition::default()).then_some(deposition),
+        sizes: (sizes != Sizes::default()).then_some(sizes),
         initial: None,
         ..config.source
     };

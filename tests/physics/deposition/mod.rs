@@ -194,7 +194,7 @@ const DIAMETER: f64 = 5e-3;
 
 fn pile(grains: usize, width: f64, seed: u64) -> NewPile {
     let deposition = Deposition::DropAndRoll;
-    NewPile { grains, box_width_in_diameters: width, seed, deposition }
+    NewPile { grains, box_width_in_diameters: width, seed, deposition, ..NewPile::default() }
 }
 
 fn walled(grains: Vec<Grain>, width: f64) -> Scene {

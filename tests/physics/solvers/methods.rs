@@ -256,7 +256,13 @@ fn every_method_keeps_the_cradle_closed_where_the_exact_answer_is_closed() {
 fn the_default_sweeps_a_large_pile_that_flows_and_solves_one_that_stands() {
     let box_width_in_diameters = 45.0;
     let deposition = Deposition::DropAndRoll;
-    let new = NewPile { grains: 1_100, box_width_in_diameters, seed: 3, deposition };
+    let new = NewPile {
+        grains: 1_100,
+        box_width_in_diameters,
+        seed: 3,
+        deposition,
+        ..NewPile::default()
+    };
     let mut scene =
         pile_of(settle(&new, |_| true).expect("a pile"), box_width_in_diameters).expect("a scene");
     scene.parameters.time_step_secs = 1e-3;

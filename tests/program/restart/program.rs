@@ -118,7 +118,7 @@ fn a_saved_run_goes_on_otherwise_where_it_is_asked_to() {
         (&["--preset", "robust", "--duration", "0.2"], "restart is given"),
         (
             &["--base-width", "20"],
-            "grains, box-width, base-width, seed, deposition, start or preset",
+            "grains, box-width, base-width, seed, deposition, sizes, start or preset",
         ),
         (&["--initial-step", "1"], "left out where scene, initial, initial-step, grains"),
         (&["--bond", "-1", "--duration", "0.2"], "bond is -1"),

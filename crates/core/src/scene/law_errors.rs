@@ -200,7 +200,13 @@ fn hard_scenes() -> Vec<(String, Scene)> {
 fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     let width = 16.0 * (grains as f64 / 138.0).sqrt();
     let deposition = Deposition::DropAndRoll;
-    let new = NewPile { grains, box_width_in_diameters: width, seed: 8, deposition };
+    let new = NewPile {
+        grains,
+        box_width_in_diameters: width,
+        seed: 8,
+        deposition,
+        ..NewPile::default()
+    };
     let mut scene = pile_of(settle(&new, |_| true).expect("a pile"), width).expect("a scene");
     (scene.parameters.bond, scene.parameters.time_step_secs) = (bond, time_step_secs);
     scene.parameters.restitution_threshold = 2.0;

@@ -11,6 +11,7 @@ mod new_pile;
 mod paper;
 mod preset;
 mod registry;
+mod sizes;
 pub mod stability;
 mod tones;
 
@@ -23,3 +24,4 @@ pub use new_pile::{Deposition, NewPile};
 pub use paper::{collision, cradle, cradle_from, paper_pile, pile_of, put_on_base, rough_base};
 pub use preset::Preset;
 pub use registry::{SCENES, SceneGroup, SceneInfo, built_in};
+pub use sizes::Sizes;

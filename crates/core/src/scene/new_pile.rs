@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::scene::sizes::Sizes;
 use crate::setting::words;
 
-/// Spacing of the rain's lattice, in diameters: room for the largest disc and its jitter.
-pub(super) const SPACING: f64 = 1.3;
+/// Least jitter of the largest disc on the rain's lattice, in diameters.
+const JITTER: f64 = 0.1;
 
 words! {
     /// Method of placing the grains of a new pile.
@@ -30,21 +31,29 @@ pub struct NewPile {
     /// Seed of the random diameters and places.
     pub seed: u64,
     /// Method of placing the grains.
-    #[serde(skip_serializing_if = "is_rain")]
+    #[serde(skip_serializing_if = "is_default")]
     pub deposition: Deposition,
+    /// Distribution of the diameters.
+    #[serde(skip_serializing_if = "is_default")]
+    pub sizes: Sizes,
 }
 
-/// Rain is not written: files without the field predate other methods.
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
-fn is_rain(deposition: &Deposition) -> bool {
-    *deposition == Deposition::Rain
+/// Defaults are not written: files without the field predate other choices.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl Default for NewPile {
     /// The paper's 138 grains. The seed is one of nine tried; with it, single runs of Fig. 4 show the effects of the
     /// means over many initial states.
     fn default() -> Self {
-        Self { grains: 138, box_width_in_diameters: 16.0, seed: 8, deposition: Deposition::Rain }
+        Self {
+            grains: 138,
+            box_width_in_diameters: 16.0,
+            seed: 8,
+            deposition: Deposition::Rain,
+            sizes: Sizes::default(),
+        }
     }
 }
 
@@ -54,9 +63,9 @@ impl NewPile {
     /// # Errors
     /// Names the field, its value and its range.
     pub fn validate(&self) -> Result<()> {
-        let width = self.box_width_in_diameters;
-        if !(SPACING..1e6).contains(&width) {
-            let allowed = format!("between {SPACING} and 1e6 diameters");
+        let (width, spacing) = (self.box_width_in_diameters, self.spacing());
+        if !(spacing..1e6).contains(&width) {
+            let allowed = format!("between {} and 1e6 diameters", (1e3 * spacing).round() / 1e3);
             return Err(Error::value("box-width", width, allowed));
         }
         if !(1..=1_000_000).contains(&self.grains) {
@@ -65,8 +74,13 @@ impl NewPile {
         Ok(())
     }
 
+    /// Spacing of the rain's lattice, in diameters: room for the largest disc and its jitter.
+    pub(super) fn spacing(&self) -> f64 {
+        self.sizes.largest() + JITTER
+    }
+
     /// Discs side by side in a row of the rain's lattice.
     pub(super) fn columns(&self) -> usize {
-        (self.box_width_in_diameters / SPACING).floor() as usize
+        (self.box_width_in_diameters / self.spacing()).floor() as usize
     }
 }

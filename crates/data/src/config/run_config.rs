@@ -13,7 +13,7 @@ use super::scene_file::{read_unsettled, unsettled};
 use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
 use crate::scene::{
-    Deposition, NewPile, Preset, Scene, SceneInfo, Settling, built_in, cradle_from, pile_of,
+    Deposition, NewPile, Preset, Scene, SceneInfo, Settling, Sizes, built_in, cradle_from, pile_of,
     put_on_base, settle,
 };
 use crate::setting::{Changes, Settable, Value};
@@ -49,7 +49,7 @@ pub struct SceneSource {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
     /// Start the pile from these discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), a recording (CSV or Parquet), or a saved run
-    #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed", "deposition"])]
+    #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed", "deposition", "sizes"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<PathBuf>,
     /// The step of the recording that the pile starts from [default: its last]
@@ -76,6 +76,10 @@ pub struct SceneSource {
     #[arg(long, value_name = "WAY", value_parser = parser_of::<Deposition>(), help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deposition: Option<Deposition>,
+    /// Distribution of the diameters of a new pile, such as lognormal:0.2; `slump generate --help` describes all [default: uniform:0.2]
+    #[arg(long, value_name = "SIZES", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<Sizes>,
     /// Start of the ball k of the cradle, in diameters to the left of i, between centres
     #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -106,6 +110,7 @@ impl SceneSource {
             "base-width" => self.base_width = map.next_value()?,
             "seed" => self.seed = map.next_value()?,
             "deposition" => self.deposition = map.next_value()?,
+            "sizes" => self.sizes = map.next_value()?,
             "start" => self.start = map.next_value()?,
             "preset" => self.preset = map.next_value()?,
             "duration" => self.duration = map.next_value()?,
@@ -114,7 +119,7 @@ impl SceneSource {
         Ok(true)
     }
 
-    /// The pile that `grains`, `box_width`, `seed` and `deposition` ask for.
+    /// The pile that `grains`, `box_width`, `seed`, `deposition` and `sizes` ask for.
     pub fn new_pile(&self) -> NewPile {
         let default = NewPile::default();
         NewPile {
@@ -122,14 +127,16 @@ impl SceneSource {
             box_width_in_diameters: self.box_width.unwrap_or(default.box_width_in_diameters),
             seed: self.seed.unwrap_or(default.seed),
             deposition: self.deposition.unwrap_or(default.deposition),
+            sizes: self.sizes.clone().unwrap_or(default.sizes),
         }
     }
 
     /// Sets the options to those of this pile.
     pub fn set_new_pile(&mut self, pile: &NewPile) {
-        let NewPile { grains, box_width_in_diameters, seed, deposition } = *pile;
+        let NewPile { grains, box_width_in_diameters, seed, deposition, sizes } = pile.clone();
         (self.grains, self.box_width) = (Some(grains), Some(box_width_in_diameters));
         (self.seed, self.deposition) = (Some(seed), Some(deposition));
+        self.sizes = (sizes != Sizes::default()).then_some(sizes);
     }
 
     /// True if a new pile is to be made, whose grains must settle.
@@ -138,6 +145,7 @@ impl SceneSource {
             || self.box_width.is_some()
             || self.seed.is_some()
             || self.deposition.is_some()
+            || self.sizes.is_some()
     }
 }
 
@@ -334,7 +342,7 @@ impl Config {
             return Err(Error::value("initial-step", step, allowed));
         }
         if self.source.makes_new_pile() {
-            self.check_pile_alone("grains, box-width, seed or deposition")?;
+            self.check_pile_alone("grains, box-width, seed, deposition or sizes")?;
             self.source.new_pile().validate()?;
         }
         match self.source.start {
@@ -450,7 +458,7 @@ impl Config {
         let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
         if self.source != kept {
             let allowed = "left out where scene, initial, initial-step, grains, box-width, base-width, \
-                           seed, deposition, start or preset is given: a run that goes on has its own";
+                           seed, deposition, sizes, start or preset is given: a run that goes on has its own";
             return Err(Error::value("restart", "given", allowed));
         }
         let mut scene = state.scene.clone();

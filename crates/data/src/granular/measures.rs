@@ -1,5 +1,7 @@
 //! Measures of a pile around each of its grains, and as a whole.
 
+use glam::DVec2;
+
 use super::MomentParts;
 use super::mean_flow::peculiar_energy;
 use super::stress::{self, Tensor};
@@ -230,5 +232,32 @@ impl PileMeasures {
             largest_normal_force: forces.largest(),
             strong_share: forces.strong_share(),
         }
+    }
+}
+
+columns! {
+    /// Shape of a heap at one moment: the triangle in which mass has the same mean height above the lowest point and the
+    /// same mean horizontal distance from the middle.
+    pub struct HeapShape {
+        /// Angle of repose: slope of the sides of the triangle.
+        repose_angle: f64, "degree";
+        /// Half the base of the triangle.
+        run_out: f64, "m";
+    }
+}
+
+impl HeapShape {
+    /// Measures a heap.
+    pub fn of(moment: &Moment) -> Self {
+        let grains = || moment.grains.iter().filter(|grain| !grain.lost);
+        let mean = |of: &dyn Fn(DVec2) -> f64| {
+            let mass: f64 = grains().map(|grain| grain.mass).sum();
+            grains().map(|grain| grain.mass * of(grain.position)).sum::<f64>() / mass
+        };
+        let lowest = grains().map(|grain| grain.position.y - grain.radius).fold(f64::NAN, f64::min);
+        let middle = mean(&|position| position.x);
+        let distance = mean(&|position| (position.x - middle).abs());
+        let height = mean(&|position| position.y - lowest);
+        Self { repose_angle: (height / distance).atan().to_degrees(), run_out: 3.0 * distance }
     }
 }

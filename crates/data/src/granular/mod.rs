@@ -26,7 +26,7 @@ pub use crate::column_spec::{CellValue, ColumnSpec};
 pub use fields::Fields;
 pub(crate) use fields::box_of;
 pub use histograms::{Histogram, histograms};
-pub use measures::{GrainMeasures, PileMeasures};
+pub use measures::{GrainMeasures, HeapShape, PileMeasures};
 
 use self::cells::PowerCells;
 use self::network::{Clusters, Coordination, ForceDistribution, Network};

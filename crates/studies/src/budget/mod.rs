@@ -20,12 +20,13 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use self::answer::budget_of;
-use self::causes::variants;
+pub(crate) use self::causes::{Cause, Variant, short, variants};
 use self::collect::{BudgetEnd, Limits, Ran, SeriesRun, collect};
-use self::quantity::{BudgetQuantity, Window};
+pub(crate) use self::quantity::{BudgetQuantity, Window, measures_of_moment};
 pub use self::rows::{BudgetAnswer, BudgetEffect, Trust};
 use self::rows::{Design, QuantityBudget};
-use self::starts::{RunValues, Starts, run, said_of};
+use self::starts::said_of;
+pub(crate) use self::starts::{RunValues, Starts, run};
 use crate::config::{Config, joined};
 use crate::error::{self, Error, Result};
 use crate::harness::{FinishedCase, Journal, Runner, Shard, journal};

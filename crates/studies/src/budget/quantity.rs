@@ -1,9 +1,10 @@
-//! The quantity of an error budget: a column of the tables `steps` and `measures`, at one time or over a window.
+//! The quantity of an error budget: a column of the tables `steps` and `measures`, or the shape of a heap, at one time or
+//! over a window.
 
 use crate::column_spec::{CellValue, ColumnSpec};
 use crate::data::STEP_COLUMNS;
 use crate::error::{Error, Result};
-use crate::granular::PileMeasures;
+use crate::granular::{HeapShape, PileMeasures};
 use crate::sim::{Observables, Simulation};
 
 /// Number of moments in a window at which the table `measures` is evaluated. One evaluation takes as long as several
@@ -25,6 +26,7 @@ const STATISTICS: [(&str, Statistic); 4] = [
 enum RecordedColumn {
     OfSteps(&'static ColumnSpec<Observables>),
     OfMeasures(&'static ColumnSpec<PileMeasures>),
+    OfShape(&'static ColumnSpec<HeapShape>),
 }
 
 /// A numeric result of a run.
@@ -69,15 +71,23 @@ fn is_number<Row>(column: &ColumnSpec<Row>) -> bool {
 
 fn names() -> impl Iterator<Item = &'static str> {
     let of_steps = STEP_COLUMNS.iter().filter(|column| is_number(column)).map(|column| column.name);
-    let measures = PileMeasures::COLUMNS.iter().map(|column| column.name);
     let is_new = |name: &&str| STEP_COLUMNS.iter().all(|column| column.name != *name);
-    of_steps.chain(measures.filter(is_new))
+    of_steps.chain(measures_of_moment().filter(is_new))
+}
+
+/// Names of the quantities that a picture of the grains and their forces shows.
+pub(crate) fn measures_of_moment() -> impl Iterator<Item = &'static str> {
+    let measures = PileMeasures::COLUMNS.iter().map(|column| column.name);
+    measures.chain(HeapShape::COLUMNS.iter().map(|column| column.name))
 }
 
 fn column_of(name: &str) -> Option<(RecordedColumn, &'static str)> {
     let of_steps = STEP_COLUMNS.iter().find(|column| column.name == name && is_number(column));
     if let Some(column) = of_steps {
         return Some((RecordedColumn::OfSteps(column), column.unit));
+    }
+    if let Some(column) = HeapShape::COLUMNS.iter().find(|column| column.name == name) {
+        return Some((RecordedColumn::OfShape(column), column.unit));
     }
     let column = PileMeasures::COLUMNS.iter().find(|column| column.name == name)?;
     Some((RecordedColumn::OfMeasures(column), column.unit))
@@ -140,7 +150,10 @@ impl<'a> QuantityWatch<'a> {
             }
             let value = match quantity.column {
                 RecordedColumn::OfSteps(column) => column.value.number(row),
-                RecordedColumn::OfMeasures(_) if !is_moment => continue,
+                _ if !is_moment => continue,
+                RecordedColumn::OfShape(column) => {
+                    column.value.number(&HeapShape::of(&simulation.moment()))
+                }
                 RecordedColumn::OfMeasures(column) => {
                     let moment = || PileMeasures::of(&simulation.moment());
                     column.value.number(measured.get_or_insert_with(moment))

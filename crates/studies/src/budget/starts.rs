@@ -23,7 +23,7 @@ const MOVED_IN_DIAMETERS: f64 = 1e-9;
 
 /// Results of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct RunValues {
+pub(crate) struct RunValues {
     /// The quantities, in order; `None` if the run has no such value.
     pub values: Vec<Option<f64>>,
     /// The reason why the values are invalid: the state was no longer finite, or grains were lost.
@@ -38,7 +38,7 @@ pub(super) struct RunValues {
 
 /// The initial states of a budget: piles with other seeds if the scene generates its grains, else the scene itself and
 /// copies with minimally displaced grains.
-pub(super) struct Starts {
+pub(crate) struct Starts {
     config: Config,
     base: BaseScene,
     /// The requested scene.
@@ -49,7 +49,7 @@ pub(super) struct Starts {
 
 impl Starts {
     /// The initial states of a request. Those of piles are stored in `states`.
-    pub(super) fn of(config: &Config, states: &Path) -> Result<Self> {
+    pub(crate) fn of(config: &Config, states: &Path) -> Result<Self> {
         let base = config.base_scene()?;
         let scene = config.change(&base)?;
         let pile = config.new_pile()?;
@@ -81,7 +81,7 @@ impl Starts {
     }
 
     /// The scene of an initial state, counted from 1, with the settings and the pile of a variant.
-    pub(super) fn scene(&self, start: u64, variant: Option<&Variant>) -> Result<Scene> {
+    pub(crate) fn scene(&self, start: u64, variant: Option<&Variant>) -> Result<Scene> {
         let settings = variant.map_or_else(|| self.scene.settings(), |variant| variant.settings);
         let pile = variant.and_then(|variant| variant.pile.as_ref()).or(self.pile.as_ref());
         let mut scene = match (pile, self.seed(start)) {
@@ -107,7 +107,7 @@ impl Starts {
     }
 
     /// The key of a run from an initial state, or of the scene itself: a hash of everything that affects its result.
-    pub(super) fn key(
+    pub(crate) fn key(
         &self,
         start: Option<u64>,
         variant: Option<&Variant>,
@@ -142,7 +142,7 @@ impl Starts {
 }
 
 /// Runs a scene to the end of the window.
-pub(super) fn run(
+pub(crate) fn run(
     scene: &Scene,
     quantities: &[BudgetQuantity],
     window: Window,

@@ -14,8 +14,8 @@ use rand_pcg::Pcg64;
 use crate::error::Result;
 use crate::scene::deposition::rolling::{Deposit, dropped};
 use crate::scene::deposition::{
-    LARGEST_RADIUS, REST_SECS, Settled, Settling, in_a_box, interrupted, kinetic_energy,
-    not_at_rest, random_radius, speeds,
+    REST_SECS, Settled, Settling, in_a_box, interrupted, kinetic_energy, not_at_rest,
+    random_radius, speeds,
 };
 use crate::scene::new_pile::NewPile;
 use crate::scene::paper::{DIAMETER, GRAVITY, rough_base};
@@ -87,9 +87,10 @@ pub fn drop_and_roll(
 
 pub(super) fn start_of(pile: &NewPile) -> Vec<Grain> {
     let mut random = Pcg64::seed_from_u64(pile.seed);
-    let radii: Vec<f64> = (0..pile.grains).map(|_| random_radius(&mut random)).collect();
+    let radii: Vec<f64> = (0..pile.grains).map(|_| random_radius(pile, &mut random)).collect();
     let width = pile.box_width_in_diameters;
-    let base = rough_base(width + 4.0 * LARGEST_RADIUS / DIAMETER, DIAMETER);
+    let base =
+        rough_base(width + 4.0 * (0.5 * DIAMETER * pile.sizes.largest()) / DIAMETER, DIAMETER);
     let discs = drop_and_roll(&radii, &base, 0.5 * width * DIAMETER, &mut random);
     discs.into_iter().map(|Disc { position, radius }| Grain::at_rest(position, radius)).collect()
 }

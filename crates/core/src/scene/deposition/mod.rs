@@ -8,7 +8,6 @@ pub use drop_and_roll::drop_and_roll;
 pub use rolling::{Deposit, Rest, Support, dropped};
 
 use glam::DVec2;
-use rand::RngExt;
 use rand_pcg::Pcg64;
 
 use crate::error::{Error, Result};
@@ -47,13 +46,8 @@ pub fn start_of(pile: &NewPile) -> Vec<Grain> {
     }
 }
 
-/// Diameters are uniform in d·[1 − SPREAD, 1 + SPREAD].
-const SPREAD: f64 = 0.2;
-/// Radius of the largest disc, m.
-const LARGEST_RADIUS: f64 = 0.5 * DIAMETER * (1.0 + SPREAD);
-
-fn random_radius(random: &mut Pcg64) -> f64 {
-    0.5 * DIAMETER * random.random_range(1.0 - SPREAD..=1.0 + SPREAD)
+fn random_radius(pile: &NewPile, random: &mut Pcg64) -> f64 {
+    0.5 * DIAMETER * pile.sizes.draw(random)
 }
 
 /// A pile counts as at rest after it has been slow for this long, s.

@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::scene::deposition::{
     REST_SECS, Settled, Settling, fastest, in_a_box, interrupted, not_at_rest, random_radius,
 };
-use crate::scene::new_pile::{NewPile, SPACING};
+use crate::scene::new_pile::NewPile;
 use crate::scene::paper::{DIAMETER, GRAVITY};
 use crate::solver::SolverSettings;
 use crate::world::Grain;
@@ -37,7 +37,7 @@ pub(super) fn settled(
     let speed_unit = (GRAVITY * DIAMETER).sqrt();
     let terminal_speed = 0.5 * speed_unit;
     // The upper rows fall farthest; the pile they land on is lower than the lattice.
-    let raining_secs = rows * SPACING * DIAMETER / terminal_speed + 0.1;
+    let raining_secs = rows * rain.spacing() * DIAMETER / terminal_speed + 0.1;
     let limit_secs = 4.0 * raining_secs + 2.0;
     // Linear, because an exponential would differ between machines in its last digits.
     let drag_per_step = 1.0 - TIME_STEP_SECS * GRAVITY / terminal_speed;
@@ -75,10 +75,10 @@ pub(super) fn settled(
 pub(super) fn lattice(rain: &NewPile) -> Vec<Grain> {
     let columns = rain.columns();
     let mut random = Pcg64::seed_from_u64(rain.seed);
-    let spacing = SPACING * DIAMETER;
+    let spacing = rain.spacing() * DIAMETER;
     (0..rain.grains)
         .map(|index| {
-            let radius = random_radius(&mut random);
+            let radius = random_radius(rain, &mut random);
             let room = 0.5 * spacing - radius;
             let jitter =
                 DVec2::new(random.random_range(-1.0..=1.0), random.random_range(-1.0..=1.0));

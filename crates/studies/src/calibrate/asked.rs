@@ -1,0 +1,70 @@
+//! Targets and parameters as a user writes them.
+
+use std::str::FromStr;
+
+use crate::budget::BudgetQuantity;
+use crate::config::Config;
+use crate::error::{self, Error, Result};
+use crate::setting::Value;
+
+/// A measured value.
+pub(super) struct Target {
+    pub quantity: BudgetQuantity,
+    pub value: f64,
+    /// Its standard error, above 0.
+    pub error: f64,
+}
+
+impl FromStr for Target {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let refuse = || {
+            let allowed = "QUANTITY=VALUE±ERROR with a standard error > 0, as in slump=0.35±0.02";
+            Error::value("target", text, allowed)
+        };
+        let (name, rest) = text.split_once('=').ok_or_else(refuse)?;
+        let (value, error) =
+            rest.split_once('±').or_else(|| rest.split_once("+-")).ok_or_else(refuse)?;
+        let [value, error] = [value, error].map(|text| text.trim().parse().unwrap_or(f64::NAN));
+        if value.is_finite() && error > 0.0 && error.is_finite() {
+            return Ok(Self { quantity: name.trim().parse()?, value, error });
+        }
+        Err(refuse())
+    }
+}
+
+/// A parameter and its range.
+pub(super) struct Varied {
+    /// Its name in files.
+    pub name: String,
+    pub range: [f64; 2],
+}
+
+impl FromStr for Varied {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let refuse = || {
+            let allowed = "SETTING=FROM..TO for a setting that is a number, as in bond=0..50";
+            Error::value("vary", text, allowed)
+        };
+        let (name, range) = text.split_once('=').ok_or_else(refuse)?;
+        let (from, to) = range.split_once("..").ok_or_else(refuse)?;
+        let range = [from, to].map(|text| text.trim().parse().unwrap_or(f64::NAN));
+        let is_range = range[0] < range[1] && (range[1] - range[0]).is_finite();
+        // Long names of options are replaced by the names in files.
+        let config = Config::of_options([(name.trim(), from.trim())])?;
+        let known = serde_json::to_value(&config).unwrap_or_default();
+        let name = known.as_object().and_then(|known| known.keys().next()).ok_or_else(refuse)?;
+        let is_number = Config::default().set(name, Value::Number(range[0]));
+        if is_range && is_number { Ok(Self { name: name.clone(), range }) } else { Err(refuse()) }
+    }
+}
+
+/// Checks that the names of targets or of parameters differ.
+pub(super) fn check_distinct(field: &str, names: &[&String]) -> Result<()> {
+    let twice = names.iter().enumerate().find(|(number, name)| names[..*number].contains(name));
+    let said = twice.map_or_else(String::new, |(_, name)| format!("{name} twice"));
+    error::check(twice.is_none(), field, said, "given once for each name")
+}

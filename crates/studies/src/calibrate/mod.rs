@@ -1,0 +1,178 @@
+//! Calibration: the parameters with which a scene reproduces measured values. Runs fill the box of the parameters, each
+//! from its own initial state. Polynomials fitted to them give a confidence region.
+
+mod asked;
+mod region;
+mod report;
+mod surrogate;
+
+use std::path::Path;
+
+use self::asked::{Target, Varied, check_distinct};
+pub use self::region::Region;
+use self::region::point_of_box;
+use self::report::Found;
+use self::surrogate::coefficients;
+use crate::budget::{
+    BudgetQuantity, Cause, RunValues, Starts, Variant, Window, measures_of_moment, run, variants,
+};
+use crate::config::{Config, joined};
+use crate::error::{self, Error, Result};
+use crate::harness::{Case, FinishedCase, Runner, Threads};
+use crate::output::{check_writable, print_line, print_text, remove_drafts};
+use crate::setting::Value;
+use crate::statistics::mean;
+
+/// Name of the journal of the runs.
+const JOURNAL: &str = "calibrate";
+/// Default number of runs per coefficient of a cubic polynomial.
+const RUNS_PER_COEFFICIENT: usize = 10;
+/// Largest numbers of parameters and of runs. More are probably a mistake.
+const MOST: [usize; 2] = [4, 100_000];
+/// Number of initial states for the effects of time step and solver.
+const PAIRS: usize = 6;
+
+/// Options of a calibration.
+#[derive(Clone, Debug)]
+pub struct CalibrateOptions {
+    /// The scene. Its seed, 1 by default, is that of the first run.
+    pub config: Config,
+    /// Measured values, as in `slump=0.35±0.02`: a quantity at the end of a run, and its standard error.
+    pub targets: Vec<String>,
+    /// Parameters with their ranges, as in `bond=0..50`.
+    pub vary: Vec<String>,
+    /// Number of runs; `None` for ten per coefficient of a cubic polynomial.
+    pub runs: Option<usize>,
+}
+
+/// A run: initial states, the number of one of them, and a change of the method.
+type Setup = (Starts, u64, Option<Variant>, Window);
+
+/// Computes a calibration in `folder`: `report.md` and a picture of the region. The same call resumes a
+/// calibration that was stopped; a call for more runs adds to those in the folder.
+///
+/// # Errors
+/// Names the target, parameter or setting that is not allowed, or the folder that cannot be written. Also fails if a
+/// pile does not come to rest, or too few runs give a result.
+pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
+    let targets: Vec<Target> =
+        options.targets.iter().map(|it| it.parse()).collect::<Result<_>>()?;
+    let vary: Vec<Varied> = options.vary.iter().map(|it| it.parse()).collect::<Result<_>>()?;
+    let names: Vec<_> = targets.iter().map(|target| &target.quantity.name).collect();
+    check_distinct("target", &names)?;
+    check_distinct("vary", &vary.iter().map(|varied| &varied.name).collect::<Vec<_>>())?;
+    let allowed = format!("{} parameters at most", MOST[0]);
+    error::check(vary.len() <= MOST[0], "vary", vary.len(), allowed)?;
+    let least = 2 * coefficients(vary.len(), 2);
+    let count = options.runs.unwrap_or(RUNS_PER_COEFFICIENT * coefficients(vary.len(), 3));
+    let allowed = format!("between {least} and {}", MOST[1]);
+    error::check((least..=MOST[1]).contains(&count), "runs", count, allowed)?;
+    let settings = options.config.without_settling()?.settings();
+    let mut config = options.config.clone();
+    // The key of a run has the number of its initial state, which calibrations with other first seeds share.
+    let first = config.source.seed.take().unwrap_or(1);
+    error::check(first <= u64::from(u32::MAX), "seed", first, "at most 4294967295")?;
+    let with = |point: &[f64]| {
+        let mut config = config.clone();
+        for (varied, value) in vary.iter().zip(point) {
+            config.set(&varied.name, Value::Number(*value));
+        }
+        config
+    };
+    let space: Vec<[f64; 2]> = vary.iter().map(|varied| varied.range).collect();
+    for end in [0, 1] {
+        let corner: Vec<f64> = space.iter().map(|range| range[end]).collect();
+        with(&corner).without_settling()?;
+    }
+    check_writable("out", folder)?;
+
+    // Other quantities, which further measurements could give, cost no further runs.
+    let is_other = |name: &&str| targets.iter().all(|target| target.quantity.name != *name);
+    let mut quantities: Vec<BudgetQuantity> =
+        targets.iter().map(|target| target.quantity.clone()).collect();
+    for name in measures_of_moment().filter(is_other) {
+        quantities.push(name.parse()?);
+    }
+    let states = folder.join("states");
+    let case = |point: &[f64], start: u64, change: Option<usize>| -> Result<Case<Setup>> {
+        let starts = Starts::of(&with(point), &states)?;
+        let variant = change.map(|change| methods(&starts).swap_remove(change));
+        let window = Window { from_secs: 0.0, to_secs: starts.scene.duration_secs };
+        let key = starts.key(Some(start), variant.as_ref(), &quantities, window)?;
+        Ok(Case { key, cost: 1.0, setup: (starts, start, variant, window) })
+    };
+    let compute = |cases: Vec<Case<Setup>>| -> Result<Vec<FinishedCase<RunValues>>> {
+        let runner = Runner::<RunValues>::open(JOURNAL, folder, JOURNAL)?;
+        runner.run(&cases, Threads::All, |(starts, start, variant, window)| {
+            run(&starts.scene(*start, variant.as_ref())?, &quantities, *window)
+        })
+    };
+    let all: Vec<Vec<f64>> = (0..count).map(|number| point_of_box(&space, number)).collect();
+    let cases = all.iter().zip(first..).map(|(point, start)| case(point, start, None));
+    let finished = compute(cases.collect::<Result<_>>()?)?;
+    let gave_targets = |run: &RunValues| {
+        run.failure.is_none() && run.values[..targets.len()].iter().all(Option::is_some)
+    };
+    let all = all.into_iter().zip(finished).filter(|(_, run)| gave_targets(&run.result));
+    let (points, runs): (Vec<_>, Vec<_>) =
+        all.map(|(point, run)| (point, run.result.values)).unzip();
+    // A quantity that some runs lack has no polynomial.
+    let whole: Vec<usize> = (0..quantities.len())
+        .filter(|&number| runs.iter().all(|values| values[number].is_some()))
+        .collect();
+    let result = |values: &Vec<Option<f64>>| whole.iter().filter_map(|&it| values[it]).collect();
+    let results: Vec<Vec<f64>> = runs.iter().map(result).collect();
+    let ends: Vec<[f64; 2]> = targets.iter().map(|target| [target.value, target.error]).collect();
+    let region = Region::new(&space, &ends, &points, &results).ok_or_else(|| {
+        let allowed = format!("at least {least} that give all targets");
+        Error::value("runs", points.len(), allowed)
+    })?;
+
+    let best = region.best();
+    let changes = methods(&Starts::of(&with(best), &states)?);
+    let mut cases = Vec::new();
+    for change in std::iter::once(None).chain((0..changes.len()).map(Some)) {
+        for start in (first + count as u64..).take(PAIRS) {
+            cases.push(case(best, start, change)?);
+        }
+    }
+    let finished = compute(cases)?;
+    let mut effects = Vec::new();
+    for (number, target) in targets.iter().enumerate() {
+        for (variant, changed) in changes.iter().zip(finished.chunks(PAIRS).skip(1)) {
+            let value = |run: &FinishedCase<RunValues>| run.result.values[number];
+            let difference = |(before, after)| Some(value(after)? - value(before)?);
+            let pairs: Vec<f64> = finished.iter().zip(changed).filter_map(difference).collect();
+            effects.push((target.quantity.name.clone(), variant.label.clone(), mean(&pairs)));
+        }
+    }
+    let mut command = vec!["slump".to_owned(), JOURNAL.to_owned()];
+    command.extend(options.config.words(&settings)?);
+    for (name, all) in [("--target", &options.targets), ("--vary", &options.vary)] {
+        command.extend(all.iter().flat_map(|text| [name.to_owned(), text.clone()]));
+    }
+    command.extend(options.runs.iter().flat_map(|runs| ["--runs".to_owned(), runs.to_string()]));
+    let others: Vec<&BudgetQuantity> = whole.iter().map(|&number| &quantities[number]).collect();
+    let command = joined(&command);
+    let found = Found {
+        command,
+        targets: &targets,
+        vary: &vary,
+        points: &points,
+        count,
+        region: &region,
+        effects,
+        quantities: &others,
+    };
+    print_text(report::write(&found, folder)?);
+    [folder, &*states].into_iter().try_for_each(remove_drafts)?;
+    print_line(folder.join(report::REPORT).display());
+    Ok(region)
+}
+
+/// The changes of the method whose effects are reported: steps that are solved more tightly, and half the time step.
+fn methods(starts: &Starts) -> Vec<Variant> {
+    let all = variants(&starts.scene, None, false);
+    let first = |cause| all.iter().find(|variant| variant.cause == cause).cloned();
+    [Cause::Unsolved, Cause::TimeStep].into_iter().filter_map(first).collect()
+}
