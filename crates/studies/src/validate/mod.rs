@@ -9,6 +9,7 @@
 //! journals of finished runs by program and processor. The same command therefore resumes if it was stopped.
 
 mod cliff;
+mod cohesive_cooling;
 mod cohesive_shear;
 mod collapse;
 mod cooling;
@@ -42,9 +43,10 @@ use crate::sim::Stepper;
 use crate::solver::Method;
 
 /// All experiments, in the order of the report.
-static EXPERIMENTS: [Experiment; 10] = [
+static EXPERIMENTS: [Experiment; 11] = [
     elasticity::EXPERIMENT,
     cooling::EXPERIMENT,
+    cohesive_cooling::EXPERIMENT,
     packing::EXPERIMENT,
     collapse::EXPERIMENT,
     cliff::EXPERIMENT,
