@@ -221,3 +221,21 @@ fn judge(all: &Measurements) -> Vec<Measured> {
     ];
     values.map(|values| (system.clone(), values)).into()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gas_pays_for_bonds_under_range_and_keeps_its_energy_under_moreau() {
+        let run = |stepper| {
+            let run =
+                GasRun { discs: 100, seed: 3, stepper, restitution: 1.0, time_step_secs: LONG };
+            run.measured().expect("a gas that stays finite")
+        };
+        let time = run(Stepper::Range).reading("time");
+        assert!((time - 1.0).abs() < 0.2, "{time}");
+        let kept = run(Stepper::Moreau).reading("kept");
+        assert!((0.98..1.001).contains(&kept), "{kept}");
+    }
+}

@@ -26,6 +26,7 @@ mod silo;
 mod surface;
 mod variants;
 mod watched;
+mod weak_cohesion;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -43,7 +44,7 @@ use crate::sim::Stepper;
 use crate::solver::Method;
 
 /// All experiments, in the order of the report.
-static EXPERIMENTS: [Experiment; 11] = [
+static EXPERIMENTS: [Experiment; 12] = [
     elasticity::EXPERIMENT,
     cooling::EXPERIMENT,
     cohesive_cooling::EXPERIMENT,
@@ -54,6 +55,7 @@ static EXPERIMENTS: [Experiment; 11] = [
     repose::EXPERIMENT,
     shear::EXPERIMENT,
     cohesive_shear::EXPERIMENT,
+    weak_cohesion::EXPERIMENT,
     janssen::EXPERIMENT,
 ];
 
