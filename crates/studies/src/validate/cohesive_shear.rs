@@ -27,9 +27,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-const INERTIAL: f64 = 0.08;
+pub(super) const INERTIAL: f64 = 0.08;
 /// Weak and strong values of η.
-const WEAK: f64 = 1.0;
+pub(super) const WEAK: f64 = 1.0;
 const STRONG: f64 = 30.0;
 
 /// η and E of the layers with a prescribed bond energy. Steps of 1 ms resolve the breaking of the weakest bonds.
@@ -44,6 +44,7 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
         inertial: INERTIAL,
         bond: 2.0 * PRESSURE * strength,
         breaking_energy,
+        bounds: None,
     };
     let mut kinds: Vec<LayerKind> =
         strengths.iter().map(|&strength| layer(strength, None)).collect();

@@ -42,10 +42,10 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-const RESTITUTION: f64 = 0.9;
+pub(super) const RESTITUTION: f64 = 0.9;
 const SOLID_FRACTION: f64 = 0.1;
 /// √(2T₀/m), m/s: in 1e-3 s a disc moves a hundredth of its diameter.
-const THERMAL_SPEED: f64 = 0.1;
+pub(super) const THERMAL_SPEED: f64 = 0.1;
 /// Duration of a run, in τ.
 const TIMES: f64 = 6.0;
 /// Number of moments at which the temperature is measured.
@@ -62,24 +62,30 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
 }
 
 /// Side of the box, m.
-fn side(discs: f64) -> f64 {
+pub(super) fn side(discs: f64) -> f64 {
     (discs * 0.25 * PI * DIAMETER * DIAMETER / SOLID_FRACTION).sqrt()
+}
+
+/// χ.
+fn contact_value() -> f64 {
+    (1.0 - 7.0 / 16.0 * SOLID_FRACTION) / (1.0 - SOLID_FRACTION).powi(2)
+}
+
+/// √π n d χ, 1/m: the number of collisions of pairs per disc and per distance √(T/m).
+pub(super) fn collisions_per_distance(discs: f64) -> f64 {
+    PI.sqrt() * discs / side(discs).powi(2) * DIAMETER * contact_value()
 }
 
 /// τ, s (see the module).
 fn time_secs(discs: f64) -> f64 {
-    let phi = SOLID_FRACTION;
-    let density = discs / side(discs).powi(2);
-    let chi = (1.0 - 7.0 / 16.0 * phi) / (1.0 - phi).powi(2);
-    let of_pairs = PI.sqrt() * density * DIAMETER * chi;
-    let at_wall = density * (1.0 + 2.0 * phi * chi);
+    let at_wall = discs / side(discs).powi(2) * (1.0 + 2.0 * SOLID_FRACTION * contact_value());
     let of_walls = 4.0 * (side(discs) - DIAMETER) * at_wall / (TAU.sqrt() * discs);
     let root = THERMAL_SPEED / 2f64.sqrt();
-    2.0 / ((1.0 - RESTITUTION.powi(2)) * root * (of_pairs + of_walls))
+    2.0 / ((1.0 - RESTITUTION.powi(2)) * root * (collisions_per_distance(discs) + of_walls))
 }
 
 /// Discs on a regular grid in a box, with velocities from Maxwell's distribution.
-fn gas(discs: usize, seed: u64) -> Scene {
+pub(super) fn gas(discs: usize, seed: u64) -> Scene {
     let side = side(discs as f64);
     let columns = (discs as f64).sqrt().ceil();
     let spacing = side / columns;

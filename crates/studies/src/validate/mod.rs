@@ -9,6 +9,7 @@
 //! journals of finished runs by program and processor. The same command therefore resumes if it was stopped.
 
 mod cliff;
+mod cohesive_cooling;
 mod cohesive_shear;
 mod collapse;
 mod cooling;
@@ -25,6 +26,7 @@ mod silo;
 mod surface;
 mod variants;
 mod watched;
+mod weak_cohesion;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -42,9 +44,10 @@ use crate::sim::Stepper;
 use crate::solver::Method;
 
 /// All experiments, in the order of the report.
-static EXPERIMENTS: [Experiment; 10] = [
+static EXPERIMENTS: [Experiment; 12] = [
     elasticity::EXPERIMENT,
     cooling::EXPERIMENT,
+    cohesive_cooling::EXPERIMENT,
     packing::EXPERIMENT,
     collapse::EXPERIMENT,
     cliff::EXPERIMENT,
@@ -52,6 +55,7 @@ static EXPERIMENTS: [Experiment; 10] = [
     repose::EXPERIMENT,
     shear::EXPERIMENT,
     cohesive_shear::EXPERIMENT,
+    weak_cohesion::EXPERIMENT,
     janssen::EXPERIMENT,
 ];
 

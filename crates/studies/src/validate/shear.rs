@@ -31,6 +31,7 @@ use crate::scene::stability::{DIAMETER, GRAVITY};
 use crate::sim::{Moment, OtherBody};
 use crate::solver::{METHODS, MethodInfo};
 use crate::statistics::{mean, slope};
+use crate::world::FrictionCone;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "shear",
@@ -73,6 +74,7 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
         inertial,
         bond: 0.0,
         breaking_energy: None,
+        bounds: None,
     };
     layers(effort, variant, &speeds.iter().map(layer).collect::<Vec<_>>())
 }
@@ -88,6 +90,8 @@ pub(super) struct LayerKind {
     pub bond: f64,
     /// Work that slowly breaks a bond, in m (γ̇ d)²; `None` for the value of the stepper's own parameters.
     pub breaking_energy: Option<f64>,
+    /// Cone, and touch tolerance in d; `None` for the defaults.
+    pub bounds: Option<(FrictionCone, f64)>,
 }
 
 /// Cases of layers; empty if the stepper does not support walls that a force drives.
@@ -150,6 +154,10 @@ impl ShearedLayer {
         scene.parameters.friction = FRICTION;
         scene.parameters.restitution = RESTITUTION;
         scene.parameters.bond = self.kind.bond;
+        if let Some((cone, touch_tolerance)) = self.kind.bounds {
+            scene.parameters.cone = cone;
+            scene.parameters.touch_tolerance = touch_tolerance;
+        }
         let top = scene.fixed_discs.iter().fold(0.0, |top: f64, disc| top.max(disc.position.y));
         for grain in &mut scene.grains {
             grain.velocity.x = speed * grain.position.y / top;
@@ -269,7 +277,8 @@ mod tests {
     #[test]
     fn a_bond_takes_the_energy_that_its_layer_asks_for() {
         let (bond, energy, inertial) = (6.0, 3.0, 0.08);
-        let kind = LayerKind { at: vec![], inertial, bond, breaking_energy: Some(energy) };
+        let kind =
+            LayerKind { at: vec![], inertial, bond, breaking_energy: Some(energy), bounds: None };
         let cell = ShearCell { wide: 16, columns: 13, rows: 18 };
         let layer = ShearedLayer { cell, kind, seed: 1 };
         for stepper in [Stepper::Range, Stepper::Dem] {
