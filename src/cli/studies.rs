@@ -81,7 +81,7 @@ pub(super) enum StudyCommand {
     Calibrate {
         #[command(flatten)]
         config: Box<Config>,
-        /// Measured value with its standard error, as in slump=0.35±0.02 (or 0.35+-0.02), at the end of the run: a quantity of `slump budget`, also repose_angle (degrees) and run_out (m); can be given several times
+        /// Measured value with its standard error, as in slump=0.35±0.02 (or 0.35+-0.02), at the end of the run: a quantity of `slump budget`, such as repose_angle (degrees) or run_out (m), which are slope and half base of the triangle with the heap's mean height and mean distance from the middle; can be given several times
         #[arg(
             long = "target",
             value_name = "X=VALUE±ERROR",
@@ -97,7 +97,7 @@ pub(super) enum StudyCommand {
             required = true
         )]
         vary: Vec<String>,
-        /// Number of runs, each with another initial state [default: 40, 100, 200 or 350 for 1 to 4 parameters]
+        /// Number of runs, each with another initial state, from --seed or 1 on [default: 40, 100, 200 or 350 for 1 to 4 parameters]
         #[arg(long, value_name = "N", help_heading = "Calibration")]
         runs: Option<usize>,
         /// Folder for report, picture and numbers; the same command continues where it stopped
