@@ -184,7 +184,7 @@ fn a_heap_has_the_slope_and_the_base_of_its_triangle() {
                 (x, y) = (1.0 - x, 1.0 - y);
             }
             let mut grain = grain.clone();
-            grain.radius = 1e-3;
+            grain.radius = 3e-5;
             let side = if random.random_range(0.0..1.0) < 0.5 { -1.0 } else { 1.0 };
             grain.position.x = 3.0 + side * 5.0 * x;
             grain.position.y = 2.0 * y;
