@@ -129,15 +129,13 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
             let [low, high] = claim.between;
             assert!(mean - half > low && mean + half < high, "{title}: {mean} ± {half}");
         }
-        // At Bond 8 the pile that is shown slumps less than most; its differences are those of the others.
-        let fewest = if title == "Bonds with a length" { 1 } else { all.len() / 4 };
         for (world, &shown) in shown.iter().enumerate() {
             let below = all.iter().filter(|slumps| slumps[world] < shown).count();
             println!("{title}, world {world}: {below} of {} slump less than {shown:.3}", all.len());
-            assert!(
-                (fewest..=all.len() - fewest).contains(&below),
-                "{title}: world {world} is an odd one"
-            );
+            let odd = below < all.len() / 4 || below > all.len() - all.len() / 4;
+            // At Bond 8 the pile that is shown slumps less than most; its differences are tested.
+            let may_be_odd = title == "Bonds with a length";
+            assert!(!odd || may_be_odd, "{title}: world {world} is an odd one");
         }
     }
 }
@@ -185,14 +183,17 @@ fn the_squeezed_disc_is_large_enough_to_be_seen_and_its_overlap_is_plotted() {
 
 #[test]
 fn the_window_shows_what_was_computed_without_it() {
-    let (at, lesson) = lesson("Two time steps");
-    let mut robot = Robot::open(Config::default());
-    robot.state_mut().visit(at);
-    robot.settle();
-    robot.send(Command::SetPace(Pace::Max));
-    robot.send(Command::Play);
-    robot.until("the end of the lesson", |state| !state.run.frame.playing);
-    assert_eq!(robot.of_worlds(|world| world.snapshot.observables.slump), slumps(lesson, None));
+    for title in ["Two time steps", "Bonds with a length"] {
+        let (at, lesson) = lesson(title);
+        let mut robot = Robot::open(Config::default());
+        robot.state_mut().visit(at);
+        robot.settle();
+        robot.send(Command::SetPace(Pace::Max));
+        robot.send(Command::Play);
+        robot.until("the end of the lesson", |state| !state.run.frame.playing);
+        let shown = robot.of_worlds(|world| world.snapshot.observables.slump);
+        assert_eq!(shown, slumps(lesson, None), "{title}");
+    }
 }
 
 #[test]

@@ -146,6 +146,23 @@ fn what_a_scheme_remembers_is_for_itself_alone() {
     assert!(run.contacts().memories().iter().all(blank));
 }
 
+#[test]
+fn settings_that_change_before_the_first_step_are_those_of_the_start() {
+    let pile = paper_pile().expect("the shipped state");
+    for &stepper in Stepper::ALL {
+        for time_step_secs in [1e-4, 5e-3] {
+            let mut scene = by(stepper, 0, pile.clone());
+            scene.parameters.time_step_secs = time_step_secs;
+            let mut changed = start(&pile);
+            changed.change(scene.settings()).expect("sound");
+            take_steps(&mut changed, 150);
+            let [hash, expected] =
+                [&changed, &after(&scene, 150)].map(|run| run.snapshot().state_hash());
+            assert_eq!(hash, expected, "{stepper}, {time_step_secs} s");
+        }
+    }
+}
+
 /// Mean and standard error.
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;

@@ -96,6 +96,14 @@ impl Candidates {
         })
     }
 
+    /// Candidates with the same reach, of which nothing is built yet.
+    ///
+    /// # Errors
+    /// Same as [`Self::new`].
+    pub(crate) fn unbuilt(&self, world: &World) -> Result<Self> {
+        Self::new(world, self.reach)
+    }
+
     /// Completes candidates read from a file, in the world they belong to.
     ///
     /// # Errors

@@ -308,6 +308,22 @@ impl Simulation {
             self.steady = Steady::since(&self.observables);
         }
         self.settings = settings;
+        if self.observables.step == 0 && self.last_stepper.is_none() {
+            self.begin_again()?;
+        }
+        Ok(())
+    }
+
+    /// Detects the contacts of the start with the present settings, as [`Self::new`] does, so that a run whose settings
+    /// change before its first step is that of the new settings, bit for bit. Steppers detect contacts in different
+    /// orders.
+    fn begin_again(&mut self) -> Result<()> {
+        let state = &mut self.state;
+        state.candidates = state.candidates.unbuilt(&state.world)?;
+        state.contacts = ContactList::default();
+        state.time_step_of_impulses_secs = self.settings.parameters.time_step_secs;
+        (self.slots, self.memory) = (Slots::default(), StepperMemory::default());
+        self.observe_start();
         Ok(())
     }
 
