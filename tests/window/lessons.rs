@@ -69,7 +69,7 @@ const CLAIMS: [Claim; 6] = [
     Claim { lesson: "The solver's part", worlds: [0, 2], between: [0.1, 0.4] },
     Claim { lesson: "The solver's part", worlds: [1, 2], between: [0.0, 0.2] },
     Claim { lesson: "Bonds with a length", worlds: [0, 1], between: [0.08, 0.2] },
-    Claim { lesson: "Bonds with a length", worlds: [2, 3], between: [-0.04, 0.04] },
+    Claim { lesson: "Bonds with a length", worlds: [2, 3], between: [-0.05, 0.05] },
     Claim { lesson: "What friction depends on", worlds: [1, 0], between: [0.2, 0.4] },
 ];
 
