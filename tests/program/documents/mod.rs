@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use crate::program::read;
 
 /// Words of the longest page, and of all pages, without generated parts.
-const MOST_WORDS: [usize; 2] = [2_000, 20_750];
+const MOST_WORDS: [usize; 2] = [2_000, 20_800];
 /// Pages that are written. `commands.md` and `columns.md` are generated, and the summary is an index.
 const MOST_PAGES: usize = 16;
 const NOT_WRITTEN: [&str; 3] = ["SUMMARY.md", "commands.md", "columns.md"];

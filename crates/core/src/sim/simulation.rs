@@ -314,9 +314,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Detects the contacts of the start with the present settings, as [`Self::new`] does, so that a run whose settings
-    /// change before its first step is that of the new settings, bit for bit. Steppers detect contacts in different
-    /// orders.
+    /// Detects the contacts of the start as [`Self::new`] does, because steppers detect them in different orders: a run
+    /// whose settings change before its first step is that of the new settings, bit for bit.
     fn begin_again(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.candidates = state.candidates.unbuilt(&state.world)?;
