@@ -328,7 +328,8 @@ mod tests {
         for argument in command.clone().get_arguments() {
             let Some(name) = argument.get_long() else { continue };
             let values = argument.get_possible_values();
-            let value = values.first().map_or("1", |value| value.get_name());
+            let of_text = if name == "sizes" { "lognormal:0.2" } else { "1" };
+            let value = values.first().map_or(of_text, |value| value.get_name());
             let matches = command.clone().try_get_matches_from([&format!("--{name}"), value]);
             let config = Config::from_arg_matches(&matches.expect("an option")).expect("a config");
             assert!(!config.is_empty(), "{name} changes nothing");

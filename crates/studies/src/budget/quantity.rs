@@ -24,9 +24,9 @@ const STATISTICS: [(&str, Statistic); 4] = [
 
 #[derive(Clone, Copy)]
 enum RecordedColumn {
-    OfSteps(&'static ColumnSpec<Observables>),
-    OfMeasures(&'static ColumnSpec<PileMeasures>),
-    OfShape(&'static ColumnSpec<HeapShape>),
+    Steps(&'static ColumnSpec<Observables>),
+    Measures(&'static ColumnSpec<PileMeasures>),
+    Shape(&'static ColumnSpec<HeapShape>),
 }
 
 /// A numeric result of a run.
@@ -84,13 +84,13 @@ pub(crate) fn measures_of_moment() -> impl Iterator<Item = &'static str> {
 fn column_of(name: &str) -> Option<(RecordedColumn, &'static str)> {
     let of_steps = STEP_COLUMNS.iter().find(|column| column.name == name && is_number(column));
     if let Some(column) = of_steps {
-        return Some((RecordedColumn::OfSteps(column), column.unit));
+        return Some((RecordedColumn::Steps(column), column.unit));
     }
     if let Some(column) = HeapShape::COLUMNS.iter().find(|column| column.name == name) {
-        return Some((RecordedColumn::OfShape(column), column.unit));
+        return Some((RecordedColumn::Shape(column), column.unit));
     }
     let column = PileMeasures::COLUMNS.iter().find(|column| column.name == name)?;
-    Some((RecordedColumn::OfMeasures(column), column.unit))
+    Some((RecordedColumn::Measures(column), column.unit))
 }
 
 /// A part of a run, in simulated time.
@@ -149,12 +149,12 @@ impl<'a> QuantityWatch<'a> {
                 continue;
             }
             let value = match quantity.column {
-                RecordedColumn::OfSteps(column) => column.value.number(row),
+                RecordedColumn::Steps(column) => column.value.number(row),
                 _ if !is_moment => continue,
-                RecordedColumn::OfShape(column) => {
+                RecordedColumn::Shape(column) => {
                     column.value.number(&HeapShape::of(&simulation.moment()))
                 }
-                RecordedColumn::OfMeasures(column) => {
+                RecordedColumn::Measures(column) => {
                     let moment = || PileMeasures::of(&simulation.moment());
                     column.value.number(measured.get_or_insert_with(moment))
                 }

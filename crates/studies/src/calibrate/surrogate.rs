@@ -120,7 +120,7 @@ pub(super) fn inverted(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     for k in 0..size {
         let pivot = matrix[k][k];
         // Also for NaN.
-        if !(pivot > 1e-14 * largest) {
+        if pivot.partial_cmp(&(1e-14 * largest)) != Some(std::cmp::Ordering::Greater) {
             return None;
         }
         matrix[k][k] = 1.0;
