@@ -170,7 +170,8 @@ pub const LESSONS: [Lesson; 7] = [
             rows: predictions::last_rows,
             result: predictions::unsolved_steps,
         }),
-        learnt: "Unsolved steps look like weaker glue. Ask for the error of a solver before you trust its piles.",
+        learnt: "Unsolved steps look like weaker glue. With few sweeps they hide the glue of the long step: two errors cancel, and \
+                 the slump is near that of lesson 1 by chance. Ask for the error of a solver.",
         worlds: |base| {
             let base = base.with_bond(20.0).over(5e-3);
             vec![sweeps(base, 5), sweeps(base, 40), base]

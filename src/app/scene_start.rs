@@ -46,7 +46,7 @@ fn start_with(
     }
 }
 
-/// Least number of grains of a heap. A pair of discs that touch is none.
+/// Least number of grains of a heap. Two discs that touch are not a heap.
 const LEAST_OF_HEAP: usize = 10;
 
 /// True if the grains lie on fixed, level ground and can spread. In other scenes Δy_G, which uses heights above y = 0,

@@ -162,7 +162,7 @@ impl WatchedRun {
         self.go_to(self.undo_target().map(|run| run.number));
     }
 
-    /// Goes on to the run from which Undo came back.
+    /// Returns to the run that Undo left.
     pub(crate) fn redo(&mut self) {
         self.go_to(self.redo_target().map(|run| run.number));
     }
@@ -179,7 +179,7 @@ impl WatchedRun {
         self.frame.past.iter().rfind(|run| !run.is_undone)
     }
 
-    /// The run that Redo goes on to.
+    /// The run that Redo returns to.
     fn redo_target(&self) -> Option<&PastRun> {
         self.frame.past.iter().find(|run| run.is_undone)
     }

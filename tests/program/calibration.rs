@@ -162,6 +162,17 @@ fn targets_and_parameters_that_are_none_are_refused_before_any_run() {
             &["--target", "slump=0.3±0.1", "--vary", "mu=0..1", "--runs", "5"],
             "runs is 5, but must be between 6 and",
         ),
+        (
+            &[
+                "--target=slump=0.3±0.1",
+                "--target=kinetic_energy=0±0.1",
+                "--target=max_overlap=0±0.1",
+                "--target=run_out=1±0.1",
+                "--vary=mu=0..1",
+                "--runs=6",
+            ],
+            "runs is 6, but must be between 7 and",
+        ),
     ] {
         let refused = sentence(&mut calibrate(&out, more));
         assert!(refused.contains(said), "{refused}");

@@ -39,6 +39,23 @@ fn a_press_and_release_in_one_frame_pin_a_grain() {
 }
 
 #[test]
+fn shift_that_is_released_in_the_frame_of_the_click_counts() {
+    let mut robot = Robot::open(pile());
+    let grains = count(&robot);
+    let pos = robot.place("scene", 0.555, 0.08);
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::SHIFT);
+    robot.harness.event(Event::PointerMoved(pos));
+    robot.harness.event(Event::ModifiersChanged(modifiers));
+    for pressed in [true, false] {
+        robot.harness.event(Event::PointerButton { pos, button, pressed, modifiers });
+    }
+    robot.harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    robot.frames(2);
+    robot.settle();
+    assert_eq!(count(&robot), grains + 1);
+}
+
+#[test]
 fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     let mut robot = Robot::open(pile());
     robot.take_steps(10);

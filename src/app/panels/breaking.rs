@@ -18,7 +18,7 @@ const MOST_GRAINS: usize = 3_000;
 /// Bonds of one world that broke lately.
 #[derive(Default)]
 pub(super) struct BreakingBonds {
-    /// Start of the run, which a new run changes, and simulated time of the moment that was shown last, s.
+    /// Number of the load, and simulated time (s), of the moment that was shown last.
     seen: (u64, f64),
     /// Pairs of grains that pulled at each other at that moment.
     pulling: BTreeSet<[u32; 2]>,

@@ -123,7 +123,8 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let end = context.run.frame.recorded_secs();
     let now = context.run.frame.time_secs();
     let duration = context.run.duration_secs();
-    let label = format!("{:.1} / {}", 1e3 * now, clock_text(end));
+    let [now_text, end_text] = [now, end].map(clock_text);
+    let label = format!("{} / {end_text}", now_text.trim_end_matches(" ms"));
     let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
     ui.with_layout(from_the_right, |ui| {
         ui.allocate_ui_with_layout(egui::vec2(118.0, 20.0), from_the_right, |ui| {

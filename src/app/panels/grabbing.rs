@@ -1,7 +1,10 @@
 //! Actions of the mouse in a world: it moves the view, pins grains and pulls them. With Shift it adds grains, removes
 //! them and draws walls.
 
-use egui::{Color32, DragValue, PointerButton, Pos2, Rect, Response, RichText, Stroke, Ui};
+use egui::{
+    Color32, DragValue, Event, InputState, PointerButton, Pos2, Rect, Response, RichText, Stroke,
+    Ui,
+};
 use glam::DVec2;
 
 use crate::app::context::PanelContext;
@@ -126,7 +129,7 @@ impl WorldCell<'_> {
     /// Carries out the actions of the mouse.
     pub(super) fn act(&self, ui: &Ui, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let (response, pointer) = (self.response, self.pointer());
-        let changes = ui.input(|input| input.modifiers.shift);
+        let changes = ui.input(has_shift);
         if response.drag_started_by(PointerButton::Primary) {
             let pressed = ui.input(|input| input.pointer.press_origin());
             if changes {
@@ -325,6 +328,16 @@ pub(super) fn show(ui: &mut Ui, preferences: &mut Preferences) {
             .max_decimals(3);
         ui.add(value.suffix(" d")).labelled_by(label.id);
     });
+}
+
+/// True if Shift was held when the mouse was pressed or released last in this frame; without such an event, if it is held
+/// at the end of the frame. In a long frame, Shift is often released before the frame ends.
+fn has_shift(input: &InputState) -> bool {
+    let of_mouse = input.events.iter().rev().find_map(|event| match event {
+        Event::PointerButton { modifiers, .. } => Some(modifiers.shift),
+        _ => None,
+    });
+    of_mouse.unwrap_or(input.modifiers.shift)
 }
 
 #[cfg(test)]

@@ -178,7 +178,7 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     ui.horizontal(|ui| {
         ui.label("Earlier runs").on_hover_text(
-            "The runs of this session: Ctrl Z goes back by one run, Ctrl Y goes on again. A click brings back a run \
+            "The runs of this session: Ctrl Z goes back by one run, Ctrl Y forward again. A click brings back a run \
              with its settings.",
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

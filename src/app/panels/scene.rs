@@ -106,6 +106,9 @@ impl ScenePanel {
         if style.show_forces {
             let colour = theme::color32(style.theme.palette().pull);
             self.breaking[index].show(ui, context.run.frame.loads, &place, colour);
+        } else {
+            // Bonds that break meanwhile do not flash later.
+            self.breaking[index] = BreakingBonds::default();
         }
         place.ghost(ui, context);
         place.words(ui, context, style, size);

@@ -101,6 +101,20 @@ fn a_contact_that_is_found_late_is_no_alarm_and_a_step_that_is_too_long_is() {
 }
 
 #[test]
+fn a_fast_grain_excuses_no_overlap_of_others() {
+    let mut scene = mass_ratio(1000.0);
+    scene.solver = SolverSettings::to_residual(Method::Nsgs, 1e-6, 10);
+    assert!(kinds(&scene, 100).contains(&AlarmKind::Overlap), "the situation");
+    let light = scene.grains[0].clone();
+    let far = light.position + 1e4 * light.radius * DVec2::Y;
+    scene.grains.push(moving(far, light.radius, 4e3 * light.radius * DVec2::Y));
+    let run = after(&scene, 100);
+    let travel = run.world().grains.velocities[2].length() * scene.parameters.time_step_secs;
+    assert!(travel > 1.5 * light.radius, "the situation: {travel}");
+    assert!(kinds(&scene, 100).contains(&AlarmKind::Overlap));
+}
+
+#[test]
 fn a_grain_that_was_placed_in_a_wall_has_not_gone_through_it() {
     let mut scene = column(1);
     let diameter = scene.mean_diameter;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::{Numbering, Other};
 use crate::error::legible;
-use crate::number::{self, millis_text, rounded_down};
+use crate::number::{millis_text, rounded_down};
 use crate::setting::words;
 use crate::sim::advice::{self, Advice};
 use crate::sim::losses::{Losses, NewLosses};
@@ -15,8 +15,9 @@ use crate::sim::{Observables, Settings};
 /// Number of consecutive steps at the sweep limit that raises an alarm. With fewer, single hard steps, which do no
 /// harm, would raise it.
 const STEPS_AT_LIMIT: u32 = 100;
-/// Overlap beyond one step's travel that raises an alarm, in diameters of the smaller disc. A smaller value warns of
-/// errors within a solver's tolerance; with a larger one, discs that unsolved steps let sink go unnoticed for longer.
+/// Overlap beyond the travel of its grains in one step that raises an alarm, in diameters of the smaller disc. A smaller
+/// value warns of errors within a solver's tolerance; with a larger one, discs that unsolved steps let sink go unnoticed
+/// for longer.
 const LARGEST_OVERLAP: f64 = 0.05;
 /// Largest travel of a step that excuses an overlap, in the same unit. A contact is detected one step late, so that a
 /// pile that falls overlaps by up to this much (138 grains without cohesion, Δt = 5 ms, six initial states: 0.43 to
@@ -136,9 +137,8 @@ pub(super) struct Watch {
     are_placed: bool,
     /// Smallest overlap since grains were placed, in diameters of the smaller disc of the deepest contact.
     placed_overlap: f64,
-    /// Largest distance that a grain has moved in one step, m.
-    #[serde(with = "number")]
-    travel: f64,
+    /// Largest distance that each grain has moved in one step, m.
+    travels: Vec<f64>,
     /// Number of bonds that have ended because their pairs turned.
     turned_bonds: u64,
     energy: ContactEnergy,
@@ -168,7 +168,15 @@ impl Watch {
     /// Treats the present positions of the grains, whose contacts have been found, as their placement.
     pub(super) fn place(&mut self, state: &State) {
         self.losses.place(&state.world.grains.positions);
-        (self.are_placed, self.placed_overlap) = (true, DeepestContact::new(state, 0.0).overlap);
+        (self.are_placed, self.placed_overlap) = (true, DeepestContact::new(state, &[]).overlap);
+    }
+
+    /// Forgets a grain that is removed.
+    pub(super) fn remove(&mut self, grain: usize) {
+        self.losses.remove(grain);
+        if grain < self.travels.len() {
+            self.travels.remove(grain);
+        }
     }
 
     /// The alarm on grains as they were placed, if there is one, before the step that follows these observables.
@@ -222,10 +230,12 @@ impl Watch {
             let advice = advice::on_unsolved(state, settings, observables.stalled);
             self.raise_with(AlarmKind::SweepLimit, observables, advice);
         }
-        let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
-        let travel = observables.time_step_secs * speeds.fold(0.0, f64::max);
-        self.travel = self.travel.max(travel);
-        let DeepestContact { overlap, found_in } = DeepestContact::new(state, self.travel);
+        // Grains may have been added.
+        self.travels.resize(world.grains.len(), 0.0);
+        for (travel, velocity) in self.travels.iter_mut().zip(&world.grains.velocities) {
+            *travel = travel.max(observables.time_step_secs * velocity.length());
+        }
+        let DeepestContact { overlap, found_in } = DeepestContact::new(state, &self.travels);
         let most = match self.placed_overlap {
             placed if placed > LARGEST_OVERLAP => placed + GROWTH_OF_OVERLAP,
             _ => LARGEST_OVERLAP,
@@ -361,7 +371,7 @@ impl Watch {
     }
 }
 
-/// The contact with the largest overlap beyond one step's travel, relative to its size.
+/// The contact with the largest overlap beyond the travel of its grains in one step, relative to its size.
 struct DeepestContact {
     /// Overlap beyond the travel, in diameters of the smaller disc; walls have no diameter.
     overlap: f64,
@@ -370,21 +380,23 @@ struct DeepestContact {
 }
 
 impl DeepestContact {
-    /// The deepest contact of a state in which grains moved by up to `travel` (m) in a step.
-    fn new(state: &State, travel: f64) -> Self {
+    /// The deepest contact of a state in which each grain moved by up to `travels` (m) in a step; no grain if it is empty.
+    fn new(state: &State, travels: &[f64]) -> Self {
         let State { world, contacts, .. } = state;
         let (radii, numbering) = (&world.grains.radii, Numbering::of(world));
+        let travel_of = |grain: usize| travels.get(grain).copied().unwrap_or(0.0);
         let mut deepest = Self { overlap: 0.0, found_in: 0 };
         for (contact, &found_in) in contacts.contacts().iter().zip(contacts.found_in()) {
             if contact.gap >= 0.0 {
                 continue;
             }
             let radius = radii[contact.grain as usize];
-            let radius_of_other = match numbering.other(contact.other) {
-                Other::Grain(grain) => radii[grain],
-                Other::FixedDisc(disc) => world.fixed_discs[disc].radius,
-                Other::Feature(_) => radius,
+            let (radius_of_other, travel_of_other) = match numbering.other(contact.other) {
+                Other::Grain(grain) => (radii[grain], travel_of(grain)),
+                Other::FixedDisc(disc) => (world.fixed_discs[disc].radius, 0.0),
+                Other::Feature(_) => (radius, 0.0),
             };
+            let travel = travel_of(contact.grain as usize) + travel_of_other;
             let diameter = 2.0 * radius.min(radius_of_other);
             let overlap = -contact.gap / diameter - (travel / diameter).min(LARGEST_TRAVEL);
             if overlap > deepest.overlap {

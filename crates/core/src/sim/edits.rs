@@ -215,7 +215,7 @@ impl Simulation {
         }
         error::check(count != 1, "grains", 1, "more than one where one is taken away")?;
         self.initial_heights -= self.state.world.grains.positions[grain].y;
-        self.watch.losses.remove(grain);
+        self.watch.remove(grain);
         self.state.remove_grain(grain)?;
         self.count_edit();
         Ok(())

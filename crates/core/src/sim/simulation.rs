@@ -307,8 +307,8 @@ impl Simulation {
         if settings.parameters.time_step_secs != self.settings.parameters.time_step_secs {
             self.steady = Steady::since(&self.observables);
         }
-        self.settings = settings;
-        if self.observables.step == 0 && self.last_stepper.is_none() {
+        let is_start = self.observables.step == 0 && self.last_stepper.is_none();
+        if settings != std::mem::replace(&mut self.settings, settings) && is_start {
             self.begin_again()?;
         }
         Ok(())
@@ -321,7 +321,7 @@ impl Simulation {
         state.candidates = state.candidates.unbuilt(&state.world)?;
         state.contacts = ContactList::default();
         state.time_step_of_impulses_secs = self.settings.parameters.time_step_secs;
-        (self.slots, self.memory) = (Slots::default(), StepperMemory::default());
+        (self.slots, self.memory) = Default::default();
         self.observe_start();
         Ok(())
     }

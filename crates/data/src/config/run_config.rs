@@ -458,7 +458,7 @@ impl Config {
         let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
         if self.source != kept {
             let allowed = "left out where scene, initial, initial-step, grains, box-width, base-width, \
-                           seed, deposition, sizes, start or preset is given: a run that goes on has its own";
+                           seed, deposition, sizes, start or preset is given: a continued run has its own";
             return Err(Error::value("restart", "given", allowed));
         }
         let mut scene = state.scene.clone();

@@ -63,7 +63,9 @@ pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
     check_distinct("vary", &vary.iter().map(|varied| &varied.name).collect::<Vec<_>>())?;
     let allowed = format!("{} parameters at most", MOST[0]);
     error::check(vary.len() <= MOST[0], "vary", vary.len(), allowed)?;
-    let least = 2 * coefficients(vary.len(), 2);
+    // Each target takes one degree of freedom from the residuals.
+    let terms = coefficients(vary.len(), 2);
+    let least = terms + terms.max(targets.len());
     let count = options.runs.unwrap_or(RUNS_PER_COEFFICIENT * coefficients(vary.len(), 3));
     let allowed = format!("between {least} and {}", MOST[1]);
     error::check((least..=MOST[1]).contains(&count), "runs", count, allowed)?;

@@ -89,8 +89,7 @@ pub(super) fn start_of(pile: &NewPile) -> Vec<Grain> {
     let mut random = Pcg64::seed_from_u64(pile.seed);
     let radii: Vec<f64> = (0..pile.grains).map(|_| random_radius(pile, &mut random)).collect();
     let width = pile.box_width_in_diameters;
-    let base =
-        rough_base(width + 4.0 * (0.5 * DIAMETER * pile.sizes.largest()) / DIAMETER, DIAMETER);
+    let base = rough_base(width + 2.0 * pile.sizes.largest(), DIAMETER);
     let discs = drop_and_roll(&radii, &base, 0.5 * width * DIAMETER, &mut random);
     discs.into_iter().map(|Disc { position, radius }| Grain::at_rest(position, radius)).collect()
 }
