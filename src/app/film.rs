@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use super::file_names::free_path;
+use super::number_text::slump_text;
 use super::scene_picture::ScenePicture;
 use super::watched_run::TakenRun;
 use super::work::Reporter;
@@ -104,7 +105,7 @@ impl FilmOrder {
                 world.settings = settings;
                 let snapshot = states.get(index)?.1;
                 let slump = snapshot.observables.slump;
-                world.note = if self.slumps { format!("Δy {slump:.3}") } else { String::new() };
+                world.note = if self.slumps { slump_text(slump) } else { String::new() };
                 world.snapshot = snapshot.into();
             }
             let image = picture.draw(&mut renderer)?;

@@ -44,12 +44,17 @@ pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     last.map(|row| row.filter(ended)).collect()
 }
 
-/// The last row with a longer Δt and the last row of all, once the pile was watched with the shorter Δt.
+/// The last row with the longest Δt and the last row of all, once the pile was watched with a shorter Δt. While a slider is
+/// dragged, a few steps have a Δt between the two.
 pub(super) fn rows_around_change(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let curve = &frame.worlds.first()?.curve;
     let last = *curve.last()?;
-    let longer = |row: &&Observables| row.step > 0 && row.time_step_secs > last.time_step_secs;
-    let before = *curve.rows().filter(longer).last()?;
+    let taken = || curve.rows().filter(|row| row.step > 0);
+    let longest_secs = taken().map(|row| row.time_step_secs).fold(last.time_step_secs, f64::max);
+    let is_before = |row: &&Observables| {
+        row.time_step_secs == longest_secs && longest_secs > last.time_step_secs
+    };
+    let before = *taken().filter(is_before).last()?;
     (last.time_secs >= before.time_secs + WATCHED_SECS).then(|| vec![before, last])
 }
 
@@ -70,7 +75,8 @@ pub(super) fn two_time_steps(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn shorter_at_rest(rows: &[Observables]) -> Option<(usize, String)> {
     let [before, after] = rows else { return None };
     let text = format!(
-        "With {} the pile had slumped by {:.3}, after {} with {} by {:.3}.",
+        "With {} the pile had slumped by {:.3}, after {} with {} by {:.3}. Now tick the box below and drag Δt a little: the \
+         pile starts again.",
         millis_text(before.time_step_secs),
         before.slump,
         millis_text(after.time_secs - before.time_secs),

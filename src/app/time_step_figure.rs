@@ -55,9 +55,11 @@ struct FigureSeries {
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
 impl TimeStepFigure {
-    /// Makes the figure of the released piles. `None` if no pile has an interval yet.
+    /// Makes the figure of the released piles. `None` if no pile has an interval yet. If worlds are compared, a series that
+    /// contains one of them has its colour; otherwise a series keeps its colour when the world changes.
     pub(super) fn new<'a>(
         released: impl Iterator<Item = &'a Released>,
+        worlds: &[Settings],
         is_dark: bool,
     ) -> Option<Self> {
         let mut all: Vec<(Settings, Vec<FigurePoint>)> = Vec::new();
@@ -70,7 +72,7 @@ impl TimeStepFigure {
             }
             let time_step_secs = settings.parameters.time_step_secs;
             let point = FigurePoint { time_step_secs, mean, half: high - mean, count: band.count };
-            let shared = settings.over(Settings::default().parameters.time_step_secs);
+            let shared = without_time_step(settings);
             match all.iter_mut().find(|(own, _)| *own == shared) {
                 Some((_, points)) => points.push(point),
                 None => all.push((shared, vec![point])),
@@ -78,6 +80,8 @@ impl TimeStepFigure {
         }
         let controls: Vec<_> =
             all.iter().map(|&(settings, _)| Controls { settings, pull: None }).collect();
+        let worlds = if worlds.len() > 1 { worlds } else { &[] };
+        let mut others = worlds.len()..;
         let series = all.into_iter().enumerate().map(|(index, (settings, mut points))| {
             points.sort_by(|one, other| one.time_step_secs.total_cmp(&other.time_step_secs));
             let bond = settings.parameters.bond;
@@ -86,7 +90,12 @@ impl TimeStepFigure {
             } else {
                 format!("Bond {bond}")
             };
-            FigureSeries { name, bond, colour: theme::world_colour(index, is_dark), points }
+            let is_of_series = |world: &Settings| without_time_step(world) == settings;
+            let is_alone = worlds.iter().filter(|world| is_of_series(world)).count() == 1;
+            let own = worlds.iter().position(is_of_series).filter(|_| is_alone);
+            let colour = own.or_else(|| others.next()).unwrap_or(index);
+            let colour = theme::world_colour(colour, is_dark);
+            FigureSeries { name, bond, colour, points }
         });
         let series: Vec<_> = series.collect();
         (!series.is_empty()).then_some(Self(series))
@@ -146,6 +155,11 @@ impl TimeStepFigure {
     }
 }
 
+/// Settings with the default Δt: the settings that a series shares.
+fn without_time_step(settings: &Settings) -> Settings {
+    settings.over(Settings::default().parameters.time_step_secs)
+}
+
 /// Text at a point: the point's name, which contains all values.
 fn hover_text(position: &HoverPosition<'_>) -> Option<String> {
     match position {
@@ -180,7 +194,7 @@ mod tests {
             released(base.with_bond(20.0).over(1e-4), 0.5, 0.125),
             released(base.with_bond(20.0).over(1e-3), 0.375, f64::INFINITY),
         ];
-        let figure = TimeStepFigure::new(all.iter(), false).unwrap();
+        let figure = TimeStepFigure::new(all.iter(), &[], false).unwrap();
         let names: Vec<_> = figure.0.iter().map(|series| series.name.as_str()).collect();
         assert_eq!(names, ["Bond 20", "Bond 100"]);
         assert_ne!(figure.0[0].colour, figure.0[1].colour);
@@ -189,8 +203,23 @@ mod tests {
                         \"Bond 20\",20,0.005,0.25,0.0625,8\n\
                         \"Bond 100\",100,0.005,0.125,0.03125,8\n";
         assert_eq!(figure.table(), expected, "one pile has no interval and no point");
-        let alone = TimeStepFigure::new(all[..1].iter(), false).unwrap();
+        let alone = TimeStepFigure::new(all[..1].iter(), &[], false).unwrap();
         assert_eq!(alone.0[0].name, "Bond 20");
-        assert!(TimeStepFigure::new(all[3..].iter(), false).is_none());
+        assert!(TimeStepFigure::new(all[3..].iter(), &[], false).is_none());
+    }
+
+    #[test]
+    fn a_series_has_the_colour_of_the_world_that_it_shows_if_worlds_are_compared() {
+        let base = Settings::default().over(5e-3);
+        let [weak, strong] = [20.0, 100.0].map(|bond| base.with_bond(bond));
+        let all = [strong, weak].map(|settings| released(settings, 0.25, 0.0625));
+        let colours = |worlds: &[Settings]| {
+            let figure = TimeStepFigure::new(all.iter(), worlds, false).unwrap();
+            figure.0.iter().map(|series| series.colour).collect::<Vec<_>>()
+        };
+        let of = |index| theme::world_colour(index, false);
+        assert_eq!(colours(&[weak, strong]), [of(1), of(0)]);
+        assert_eq!(colours(&[weak, weak.over(1e-4)]), [of(2), of(3)], "two worlds in one series");
+        assert_eq!(colours(&[weak]), [of(0), of(1)], "one world");
     }
 }

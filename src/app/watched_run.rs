@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, channel};
 use glam::DVec2;
 
 use super::file_names::stem;
+use super::number_text::slump_text;
 use super::titles::title_among;
 use crate::config::Config;
 use crate::live::{
@@ -123,6 +124,12 @@ impl WatchedRun {
         self.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs)
     }
 
+    /// True if the visible moment is the end of the scene, or later.
+    pub(crate) fn has_ended(&self) -> bool {
+        let last = self.world().map(|world| world.snapshot.observables).unwrap_or_default();
+        self.frame.time_secs() + 0.5 * last.time_step_secs >= self.duration_secs()
+    }
+
     /// The settings in which a world differs from the others.
     pub(crate) fn title(&self, world: usize) -> String {
         title_among(&self.wanted, world)
@@ -136,8 +143,7 @@ impl WatchedRun {
     /// Slump of a world as text, if the scene is a heap.
     pub(crate) fn slump_text(&self, world: usize) -> String {
         let world = self.frame.worlds.get(world).filter(|_| self.slumps());
-        world
-            .map_or_else(String::new, |world| format!("Δy {:.3}", world.snapshot.observables.slump))
+        world.map_or_else(String::new, |world| slump_text(world.snapshot.observables.slump))
     }
 
     /// First part of the names of saved files.

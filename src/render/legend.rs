@@ -210,7 +210,7 @@ impl Legend {
         let (prefix, factor) = si_prefix(reference);
         let value = reference / factor;
         let step = round_below(value.abs().max(1e-9)) / 10.0;
-        let widest = format!("full width:\n{} {prefix}N", decimal(value, step));
+        let widest = format!("widest line:\n{} {prefix}N", decimal(value, step));
         let note = TextBlock::wrapped(&widest, &self.text(), largest as f32);
         let mut y = bottom - i64::from(note.height());
         // Before the first step no force is known.

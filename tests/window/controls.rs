@@ -29,7 +29,7 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     let mut robot = Robot::open(pile());
     robot.clicks(&["Law, solver", "dem"]);
     robot.settle();
-    robot.type_number("Bond", "20");
+    robot.type_number("Bond, cohesion", "20");
     robot.type_number("k, stiffness", "2000");
     robot.settle();
     assert_eq!(robot.settings().parameters.stiffness, 2000.0);
@@ -59,7 +59,7 @@ fn the_run_changes_while_it_runs() {
     let mut robot = Robot::open(pile());
     robot.click("▶  Release");
     robot.until("ten steps", |state| state.run.world().unwrap().snapshot.observables.step >= 10);
-    robot.type_number("Bond", "75");
+    robot.type_number("Bond, cohesion", "75");
     let world = robot.world();
     assert!(robot.state().run.frame.playing);
     assert_eq!(world.controls.settings.parameters.bond, 75.0);
@@ -131,11 +131,11 @@ fn what_makes_no_sense_is_refused_visibly() {
         ("-5", "Bond is -5, but must be a finite number ≥ 0"),
         ("strong", "“strong” is not a number"),
     ] {
-        robot.type_number("Bond", text);
+        robot.type_number("Bond, cohesion", text);
         assert_eq!(robot.settings().parameters.bond, 20.0);
         assert!(robot.harness.query_by_label(complaint).is_some(), "{complaint}");
     }
-    robot.type_number("Bond", "500");
+    robot.type_number("Bond, cohesion", "500");
     assert_eq!(robot.settings().parameters.bond, 500.0, "beyond the slider is no mistake");
     assert!(!robot.shows("is not a number"));
 }

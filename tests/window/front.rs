@@ -86,7 +86,7 @@ fn nothing_starts_while_a_slider_is_held() {
 fn a_number_that_is_typed_starts_the_pile_again_as_well() {
     let mut robot = open(pile());
     robot.take_steps(5);
-    robot.type_number("Bond", "75");
+    robot.type_number("Bond, cohesion", "75");
     assert_eq!(robot.settings().parameters.bond, 75.0);
     assert!(robot.state().run.frame.playing && robot.state().run.frame.past.len() == 1);
 }
@@ -134,7 +134,7 @@ fn switched_off_the_run_goes_on_and_the_hint_says_what_is_true_then() {
     drag_time_step(&mut robot);
     assert_eq!((robot.steps(), robot.state().run.frame.past.len()), (20, 0));
     robot.harness.step();
-    assert!(robot.shows("Bonds that hold stay as they are"));
+    assert!(robot.shows("A new value acts from the next step on"));
 }
 
 /// All controls that can be clicked, dragged or typed into. A slider and its number count as one.
@@ -290,7 +290,7 @@ fn a_budget_is_computed_to_its_end_though_its_list_is_closed() {
 }
 
 const BEYOND_REASON: [(&str, &str, &str); 3] = [
-    ("Bond", "1e308", "Bond is 1e308, but must be at most 1e6"),
+    ("Bond, cohesion", "1e308", "Bond is 1e308, but must be at most 1e6"),
     ("μ, friction", "1e9", "μ is 1e9, but must be at most 1e6"),
     ("Δt, time step", "5000", "Δt is 5000 ms, but must be at most 1000 ms"),
 ];

@@ -228,7 +228,7 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     robot.state_mut().visit(0);
     robot.settle();
     assert!(robot.shows("One pile twice") && !robot.shows("A number was changed"));
-    robot.type_number("Bond", "50");
+    robot.type_number("Bond, cohesion", "50");
     robot.frames(2);
     assert!(robot.shows("A number was changed") && !robot.shows("One pile twice"));
 
@@ -245,14 +245,16 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     robot.settle();
     robot.type_number("Δt, time step", "0.1");
     robot.frames(2);
-    assert!(robot.shows("This pile is stepped by 5 ms"));
-    robot.type_number("Bond", "0");
+    assert!(robot.shows("This pile is computed with Δt = 5 ms"));
+    robot.type_number("Bond, cohesion", "0");
     robot.frames(2);
-    assert!(robot.shows("A number was changed") && !robot.shows("This pile is stepped by 5 ms"));
+    assert!(
+        robot.shows("A number was changed") && !robot.shows("This pile is computed with Δt = 5 ms")
+    );
     // The last lesson allows any change.
     robot.state_mut().visit(LESSONS.len() - 1);
     robot.settle();
-    robot.type_number("Bond", "0");
+    robot.type_number("Bond, cohesion", "0");
     let base = robot.settings();
     robot.send(Command::Compare(vec![base, base.with_bond(50.0)]));
     robot.frames(2);
@@ -336,7 +338,7 @@ const SMALL: egui::Vec2 = egui::vec2(1024.0, 700.0);
 
 /// Settings of the front, and the labels of their sliders.
 const SLIDERS: [(&str, &str); 4] = [
-    ("bond", "Bond slider"),
+    ("bond", "Bond, cohesion slider"),
     ("dt", "Δt, time step slider"),
     ("rho", "ρ, restitution slider"),
     ("mu", "μ, friction slider"),
@@ -387,6 +389,30 @@ fn the_lesson_on_bonds_asks_for_one_thing_after_the_other() {
     robot.type_number("Δt, time step", "2e-4");
     let row = robot.observables();
     assert_eq!(row.time_secs, row.step as f64 * row.time_step_secs, "from the start");
+}
+
+#[test]
+fn a_step_while_the_slider_moves_is_not_the_answer_and_the_next_run_asks_nothing() {
+    let (at, lesson) = lesson("A pile at rest");
+    let mut robot = Robot::open(Config::default());
+    robot.state_mut().visit(at);
+    robot.settle();
+    robot.click("stay");
+    robot.take_steps(3);
+    for millis in ["1", "0.5"] {
+        let before = robot.steps();
+        robot.type_number("Δt, time step", millis);
+        robot
+            .until("a step", |state| state.run.world().unwrap().snapshot.observables.step > before);
+    }
+    robot.send(Command::SetPace(Pace::Max));
+    robot.until("0.3 s", |state| state.run.frame.time_secs() > 0.35);
+    robot.frames(2);
+    assert!(robot.shows("With 5 ms the pile had slumped by") && robot.shows("with 0.5 ms by"));
+    robot.click("start again when I move a slider");
+    robot.type_number("Δt, time step", "0.4");
+    robot.take_steps(2);
+    assert!(robot.shows(lesson.learnt) && !robot.shows("What will the pile at rest do"));
 }
 
 #[test]

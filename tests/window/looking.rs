@@ -52,7 +52,7 @@ fn a_refusal_moves_no_control() {
     let mut robot = Robot::open(pile());
     let place = |robot: &Robot| robot.state().controls["μ"];
     let before = place(&robot);
-    robot.type_number("Bond", "-1");
+    robot.type_number("Bond, cohesion", "-1");
     robot.harness.step();
     assert!(robot.harness.query_by_label_contains("Bond is -1").is_some(), "the refusal is told");
     assert_eq!(place(&robot), before);

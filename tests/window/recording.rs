@@ -15,7 +15,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
             robot.type_number("Δt, time step", "2");
         }
         if step == 50 {
-            robot.type_number("Bond", "80");
+            robot.type_number("Bond, cohesion", "80");
         }
         robot.state_mut().run.step();
     }
@@ -214,7 +214,7 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
     let mut recorded = vec![robot.bits()];
     for step in 1..=steps {
         if step == 30 {
-            robot.type_number("Bond", "80");
+            robot.type_number("Bond, cohesion", "80");
         }
         robot.key(egui::Key::ArrowRight);
         recorded.push(robot.bits());

@@ -214,11 +214,6 @@ impl Ensemble {
         Some(said(&self.summary(world)?, row.time_secs))
     }
 
-    /// Result of the other piles in short, for narrow places.
-    pub(crate) fn said_in_short(&self, frame: &LiveFrame, world: usize) -> Option<String> {
-        Some(self.said(frame, world)?.replace("other piles", "others"))
-    }
-
     /// Mean slump of the other piles that have reached a simulated time (s), half the width of its interval, and their
     /// number.
     pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
@@ -270,7 +265,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
         (None, Some((number, _))) => {
             format!("other piles: making pile {number} of {}", summary.seeds.len())
         }
-        (None, None) => "other piles are being computed".into(),
+        (None, None) => "other piles: none yet".into(),
     }
 }
 
@@ -320,7 +315,7 @@ mod tests {
         assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
         assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
         assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: making pile 2 of 3");
-        assert_eq!(said(&told(&[], None), 0.0), "other piles are being computed");
+        assert_eq!(said(&told(&[], None), 0.0), "other piles: none yet");
         assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");
     }
 }

@@ -61,6 +61,8 @@ fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
         )
     } else if frame.at_start() {
         ("▶  Start", "Let time pass (space)")
+    } else if context.run.has_ended() {
+        ("▶  Continue", "The scene has reached its end: let more time pass (space)")
     } else {
         ("▶  Resume", "Let time pass again from the visible moment (space)")
     };
@@ -208,7 +210,12 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
         ui.add(egui::Label::new(text).truncate());
         return;
     }
-    let text = if !context.preferences.starts_again && !context.run.frame.at_start() {
+    let of_worlds;
+    let text = if context.run.compares() && context.touring {
+        of_worlds =
+            format!("These sliders change run {}, the framed one.", context.run.selected + 1);
+        Some(of_worlds.as_str())
+    } else if !context.preferences.starts_again && !context.run.frame.at_start() {
         Some(LIVE)
     } else if context.run.slumps() && !context.touring {
         budget::what_to_try(&settings)
@@ -220,5 +227,4 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
 }
 
 /// Hint on a value that is changed while time passes.
-const LIVE: &str = "A new value acts from the next step on. Bonds that hold stay as they are; a longer Δt in \
-                    mid-fall presses fast grains into one another.";
+const LIVE: &str = "A new value acts from the next step on. A longer Δt in mid-fall presses fast grains into one another.";

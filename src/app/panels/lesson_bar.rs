@@ -127,13 +127,20 @@ fn prediction(
         ui.label(learnt);
         return;
     }
-    explained(ui.label(LESSONS[at].watch), LESSONS[at].watch);
     let waits = is_there && context.run.frame.at_start() && !context.run.frame.playing;
+    // A run after the question was answered.
+    if predicted.as_ref().is_some_and(|it| it.was_right.is_some()) && is_there && !waits {
+        ui.label(LESSONS[at].learnt);
+        return;
+    }
+    explained(ui.label(LESSONS[at].watch), LESSONS[at].watch);
     let answer = predicted.map(|predicted| predicted.answer);
     let mut clicked = None;
     let mut buttons = Rect::NOTHING;
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(question.text).strong());
+        // The ring that asks for an answer leaves the question free.
+        ui.add_space(4.0);
         for (index, text) in question.answers.iter().enumerate() {
             let button = Button::selectable(answer == Some(index), *text).frame_when_inactive(true);
             let hint = "Your prediction. Choose it before you release the pile.";

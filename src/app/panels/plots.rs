@@ -47,7 +47,9 @@ fn figure(ui: &Ui, context: &PanelContext<'_>) -> Option<TimeStepFigure> {
     let mut shown = QUANTITIES.iter().filter(|it| is_shown(context.run, context.preferences, it));
     let slump_is_shown = shown.any(|quantity| quantity.name == "slump");
     let released = context.ensemble.released(&context.run.frame);
-    TimeStepFigure::new(released, ui.visuals().dark_mode).filter(|_| slump_is_shown)
+    let worlds = context.run.frame.worlds.iter();
+    let worlds: Vec<_> = worlds.map(|world| world.controls.settings).collect();
+    TimeStepFigure::new(released, &worlds, ui.visuals().dark_mode).filter(|_| slump_is_shown)
 }
 
 /// Shows the buttons that save or clear the figure, from right to left.

@@ -23,7 +23,7 @@ pub(super) fn show(
             ways(ui, context, help);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 pace(ui, &context.run.frame);
-                messages(ui, context);
+                messages(ui, context, trust);
             });
         });
     });
@@ -64,8 +64,8 @@ fn pace(ui: &mut Ui, frame: &LiveFrame) {
     }
 }
 
-/// Shows the last action or failure. A lesson about failures shows no alarms.
-fn messages(ui: &mut Ui, context: &mut PanelContext<'_>) {
+/// Shows the last action, a failure, or the reason not to trust the run. A lesson about failures shows no alarms.
+fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, trust: &TrustPanel) {
     if let Some((notice, left_secs)) =
         context.notice.as_ref().and_then(|it| Some((it, it.left_secs()?)))
     {
@@ -80,6 +80,8 @@ fn messages(ui: &mut Ui, context: &mut PanelContext<'_>) {
     {
         let rect = message(ui, &format!("▲ {alarm}"), warning);
         context.note_control("alarm", rect);
+    } else if let Some(reason) = trust.reason_against(context.run) {
+        message(ui, &reason, ui.visuals().weak_text_color());
     }
 }
 

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::{
-    Align, Color32, CornerRadius, Label, Layout, Rect, RichText, ScrollArea, Sense, Stroke, Ui,
-    pos2, vec2,
+    Align, Button, Color32, CornerRadius, Label, Layout, Rect, RichText, ScrollArea, Sense, Stroke,
+    Ui, pos2, vec2,
 };
 
 use super::alarms::alarms;
@@ -120,25 +120,31 @@ impl TrustPanel {
 
     /// The word in the status bar, which opens the panel.
     pub(super) fn button(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (trust, _) = self.verdict(context.run);
+        let (trust, reason) = self.verdict(context.run);
         let dark = ui.visuals().dark_mode;
         let colour = match trust {
             Trust::Yes | Trust::Mostly => theme::good(dark),
             Trust::No if !context.touring => theme::warning(dark),
             Trust::No | Trust::NotKnownYet => ui.visuals().text_color(),
         };
-        let text = RichText::new(format!("Can I trust this? {}", trust.words())).color(colour);
-        let button = ui.selectable_label(self.is_open, text);
+        let text = RichText::new(heading(context.run, trust)).color(colour);
+        let button = ui.add(Button::selectable(self.is_open, text).frame_when_inactive(true));
         context.note_control("trust", button.rect);
-        let hint = "Is a number of this run the grains', the law's or the method's? A click opens the answer.";
+        let hint = format!("{reason} A click opens the whole answer.");
         self.is_open ^= button.on_hover_text(hint).clicked();
+    }
+
+    /// The reason not to trust the run, unless it cannot be shown yet.
+    pub(super) fn reason_against(&self, run: &WatchedRun) -> Option<String> {
+        let (trust, reason) = self.verdict(run);
+        (trust == Trust::No).then_some(reason)
     }
 
     /// The panel: the reason of the verdict, the bars of the budget, and the rest below.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         ui.horizontal(|ui| {
-            ui.heading(format!("Can I trust this? {}", trust.words()));
+            ui.heading(heading(context.run, trust));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let close = ui.button("✖").on_hover_text("Close (Esc). The computation continues.");
                 self.is_open &= !close.clicked();
@@ -228,6 +234,15 @@ impl TrustPanel {
             _ => None,
         };
     }
+}
+
+/// The question and its answer in a word. Of several worlds, the question is about the selected one.
+fn heading(run: &WatchedRun, trust: Trust) -> String {
+    let asked = match run.compares() {
+        true => format!("Can I trust run {}?", run.selected + 1),
+        false => "Can I trust this?".to_owned(),
+    };
+    format!("{asked} {}", trust.words())
 }
 
 /// The effects of an error budget as bars with their intervals, the largest first, as in the picture of `slump budget`.

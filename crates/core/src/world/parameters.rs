@@ -40,7 +40,7 @@ settings! {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
-                label: "Bond",
+                label: "Bond, cohesion",
                 symbol: "Bond",
                 hint: "Cohesion: a contact pulls with up to so many times the weight of its effective mass \
                        m_i·m_j/(m_i + m_j), which for two equal discs is half a disc's, and on a base a whole one's.",
