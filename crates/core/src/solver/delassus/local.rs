@@ -87,8 +87,8 @@ impl LocalBlock {
             return impulse;
         }
         let (other, pushed_along_other) = self.slip(free, stuck[1] <= 0.0);
-        // Because of rounding it is possible that no case satisfies the law. Then the slip with the smaller violation is
-        // taken.
+        // Because of rounding it is possible that no case satisfies the law. Then the slip with the smaller
+        // violation is taken.
         if pushed_along_other < pushed_along { other } else { impulse }
     }
 

@@ -382,8 +382,8 @@ impl ContactSystem for DelassusProblem {
 mod tests {
     use super::*;
 
-    /// The problem has two contacts on opposite sides of one body, each closing at 1 m/s. For any impulses u₀ + u₁ = −2 m/s,
-    /// so the two velocities cannot both be ≥ 0.
+    /// The problem has two contacts on opposite sides of one body, each closing at 1 m/s. For any impulses
+    /// u₀ + u₁ = −2 m/s, so the two velocities cannot both be ≥ 0.
     #[test]
     fn a_problem_without_solution_is_told_from_one_that_was_stopped_too_early() {
         let matrix = Triplets {
