@@ -174,8 +174,7 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     }
 }
 
-/// Runs grains in a drum for one turn. A closed drum loses no grain, and its boundary has turned by the right angle. A
-/// drum that is cut open loses grains.
+/// Runs grains in a drum for one turn. A closed drum loses no grain, and its boundary has turned by the right angle.
 #[test]
 fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     let mut random = random(4);
