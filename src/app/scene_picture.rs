@@ -1,4 +1,4 @@
-//! A picture of all worlds.
+//! A picture of all worlds (simulations side by side).
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use crate::output::Texts;
 use crate::render::{Camera, Renderer, Style, WorldPanel, draw_worlds};
 use crate::sim::{Settings, Snapshot};
 
-/// A world of a picture.
+/// A world in a picture.
 pub(crate) struct PicturedWorld {
     pub snapshot: Arc<Snapshot>,
-    /// The settings at that moment.
+    /// The settings at the moment of the snapshot.
     pub settings: Settings,
-    /// Text below the world.
+    /// Text in the lower right corner of the world.
     pub note: String,
 }
 
