@@ -10,7 +10,7 @@ pub enum Error {
     Value {
         /// Name of the field, as the user writes it.
         field: String,
-        /// The value found.
+        /// The value that was found.
         value: String,
         /// Description of the allowed values.
         allowed: String,
@@ -60,19 +60,19 @@ pub enum Error {
         ))
     )]
     NonFinite {
-        /// Number of the step after which a number in the state was not finite.
+        /// Number of the last step, after which a position or velocity was not finite.
         step: u64,
-        /// Simulated time of that step, s.
+        /// Simulated time after the last step, s.
         time_secs: f64,
-        /// Bond number during that step.
+        /// Bond number in the last step.
         bond: f64,
         /// Time step, s.
         time_step_secs: f64,
-        /// Restitution during that step.
+        /// Restitution in the last step.
         restitution: f64,
-        /// Friction coefficient during that step.
+        /// Friction coefficient in the last step.
         friction: f64,
-        /// The change of settings that is most likely to help, as the end of the sentence.
+        /// Advice that ends the sentence: the change of settings that is most likely to help.
         advice: String,
     },
 }

@@ -66,7 +66,7 @@ pub struct Control {
 }
 
 impl Control {
-    /// A control without a label or a hint, with values from 0 to 1. Declarations start from it.
+    /// A control without a label or a hint, with values from 0 to 1. Declarations override some of its fields.
     pub(crate) const PLAIN: Self = Self {
         label: "",
         symbol: "",
@@ -98,7 +98,8 @@ pub(crate) struct Declaration<T> {
 }
 
 impl<T: Settable> Declaration<T> {
-    /// A declaration that allows any value and has no control in the window. Declarations start from it.
+    /// A declaration that allows any value and has no control in the window. Declarations override some of its
+    /// fields.
     pub(crate) const ANY: Self = Self {
         name: "",
         value_name: T::VALUE_NAME,

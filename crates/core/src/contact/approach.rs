@@ -20,7 +20,7 @@ const MOST_STEPS: u32 = 60;
 const ROUNDING_IN_RADII: f64 = 1e-13;
 
 /// Returns the normal and the gap (m) between a disc with the given centre and radius (m) and another body. `None` if
-/// another feature reports the nearest point.
+/// the nearest point is a corner that another feature (another part of a boundary) reports.
 #[inline(always)]
 pub(super) fn approach(
     world: &World,
@@ -60,7 +60,7 @@ fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
 
 impl Contact {
     /// Returns the gap of the pair at the present positions, m. `None` if the grain now touches another feature
-    /// instead.
+    /// (another part of a boundary) instead.
     pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
         let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
         let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
@@ -68,21 +68,21 @@ impl Contact {
     }
 }
 
-/// Criterion that selects pairs with a gap as contacts, because they may touch within the step.
+/// Criterion by which pairs that do not touch yet are contacts too, because they may touch within the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LookAhead {
     /// Time step Δt, s.
     pub time_step_secs: f64,
-    /// Pairs that would approach each other to less than this distance (m) within the step are contacts.
+    /// Distance, m. Pairs that would approach each other to less than this distance within the step are contacts.
     pub distance: f64,
-    /// Pairs with a larger gap than this (m) are not contacts, unless they are bonded.
+    /// Largest gap, m. Pairs with a larger gap are not contacts, unless they are bonded.
     pub reach: f64,
-    /// Criterion for contacts that can pull.
+    /// Criterion by which a contact is in touch, so that it can pull.
     pub in_touch: InTouch,
 }
 
-/// Criterion by which a contact is in touch, so that it can pull. The grains of all other contacts are only near each
-/// other.
+/// Criterion by which a contact is in touch, so that it can pull. The grains of contacts that are not in touch are
+/// only near each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum InTouch {
     /// Pairs that touch when the step begins are in touch.
@@ -94,7 +94,8 @@ pub(crate) enum InTouch {
 }
 
 impl LookAhead {
-    /// Returns this look-ahead, changed so that all pairs with a gap of at most `range` (m) are in touch.
+    /// Returns a copy of this criterion in which all pairs with a gap of at most `range` (m) are in touch, so that
+    /// they can pull.
     pub(crate) fn pulling_within(self, range: f64) -> Self {
         Self {
             distance: self.distance.max(range),
@@ -105,7 +106,8 @@ impl LookAhead {
     }
 
     /// Returns the gap that a grain of this velocity (m/s) may close by its own speed within the step, m. If pairs
-    /// stay bonded, it is half the reach, because bonds may be open even if their grains are slow.
+    /// stay bonded, it is half of `reach` (the largest gap of a contact), because bonds may be open even if their
+    /// grains are slow.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
         /// Factor that allows for the rounding of a speed.
         const ROUNDING: f64 = 1.0 + 1e-9;
@@ -130,7 +132,7 @@ impl LookAhead {
 /// Motion of a grain relative to the other body of a contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// Starting point of the motion minus the present relative position, m.
+    /// Relative position at time 0 of the motion, minus the present relative position, m.
     pub offset: DVec2,
     /// Relative velocity v, m/s, at time 0.
     pub velocity: DVec2,
@@ -149,7 +151,8 @@ impl RelativeMotion {
         self.velocity + secs * self.acceleration
     }
 
-    /// Returns the normal and the gap (m) after `secs` seconds. `None` if another feature reports the nearest point.
+    /// Returns the normal and the gap (m) after `secs` seconds. `None` if the nearest point is a corner that another
+    /// feature (another part of a boundary) reports.
     pub(crate) fn approach(
         &self,
         world: &World,

@@ -9,10 +9,10 @@
 //! each point distinguishes points of different cells in the same bucket.
 //!
 //! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are as wide as
-//! the largest disc, so each small disc would be compared with very many others. A tree has no such length. The tree
-//! is built once. After that, its bounding boxes are adjusted to the moved discs, and its structure is improved a
-//! little in each search. Building the tree again for each search is slower than the grid (`cargo bench --bench
-//! broad_phase`).
+//! the largest disc, so each small disc would be compared with very many others. A tree does not need a common cell
+//! width. The tree is built once. After that, its bounding boxes are adjusted to the moved discs, and its structure
+//! is improved a little in each search. According to `cargo bench --bench broad_phase`, building the tree again for
+//! each search is slower than the grid.
 
 use glam::DVec2;
 use parry2d_f64::bounding_volume::Aabb;
@@ -56,8 +56,8 @@ impl BroadPhase {
         }
     }
 
-    /// Calls `found` once for every pair of discs whose distance is below the sum of their extents (radius plus skin,
-    /// m). It is also called for some pairs that are farther apart.
+    /// Calls `found` once for every pair of discs whose distance is below the sum of their extents (radius plus
+    /// search margin, m). It is also called for some pairs that are farther apart.
     pub fn pairs<const AXES: usize>(
         &mut self,
         centres: &[DVec2],

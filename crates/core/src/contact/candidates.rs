@@ -1,12 +1,12 @@
 //! The candidates: pairs of bodies that may touch soon. The list is kept until a grain has moved so far that another
 //! pair could touch.
 //!
-//! Each body has a skin (a length), and a pair is a candidate if its gap is below the sum of its two skins. No pair
-//! outside the list can touch before one of its bodies has moved by its own skin, so the list is rebuilt only then. A
-//! skin is a fraction of the mean diameter, but not larger than the disc. So each disc has few candidates among discs
-//! of its size and larger discs, and the list grows in proportion to the number of discs, whatever their sizes are.
-//! Candidates are sorted by (i, other), so the order of contacts depends only on positions and numbering and not on
-//! the time at which the list was built.
+//! Each body has a search margin, its *skin* (m). A pair is a candidate if its gap is below the sum of its two skins.
+//! No pair outside the list can touch before one of its bodies has moved by its own skin, so the list is rebuilt only
+//! then. A skin is a fraction of the mean diameter, but not larger than the disc. So each disc has few candidates
+//! among discs of its size and larger discs, and the list grows in proportion to the number of discs, whatever their
+//! sizes are. Candidates are sorted by the numbers of their bodies (i, other), so the order of contacts depends only
+//! on positions and numbering and not on the time at which the list was built.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -23,10 +23,10 @@ use crate::world::{Carry, World};
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// Pairs with a gap below this distance (m) are candidates. If a disc is smaller than this distance, its pairs
-    /// are candidates only up to a smaller gap.
+    /// Search distance, m: pairs with a smaller gap are candidates. If a disc is smaller than this distance, its
+    /// pairs are candidates only up to a smaller gap.
     pub skin: f64,
-    /// Pairs with a gap below this tolerance (m) touch. It is 0 or a small tolerance for rounding.
+    /// Largest gap of a touching pair, m. It is 0 or a small tolerance for rounding.
     pub gap_tolerance: f64,
 }
 
@@ -40,30 +40,32 @@ pub struct Candidates {
     reach: Reach,
     #[serde(skip)]
     features: Vec<Feature>,
-    /// The index of the boundary to which each feature belongs.
+    /// The index of the boundary to which each feature (half-space, segment or polygon) belongs.
     #[serde(skip)]
     boundary_of: Vec<usize>,
-    /// Longest displacement of a feature since the last build, m, at the points near which grains are.
+    /// Largest displacement of a feature near any grain since the list was last built, m.
     way_of_features: f64,
-    /// Longest displacement of a fixed disc since the last build, m.
+    /// Largest displacement of a fixed disc since the list was last built, m.
     way_of_discs: f64,
-    /// Displacement of images beyond a sheared border relative to their discs since the last build, m.
+    /// Displacement of periodic images beyond a sheared border relative to their discs since the list was last built,
+    /// m.
     way_of_images: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
     /// Radii of the grains, then of the fixed discs, m.
     #[serde(skip)]
     radii: Vec<f64>,
-    /// Skins of the grains and fixed discs at the last build, m: the distance that each may move before the list is
-    /// rebuilt.
+    /// Skins (search margins) of the grains and fixed discs when the list was last built, m: the distance that each
+    /// may move before the list is rebuilt.
     skins: Vec<f64>,
     skin_of_features: f64,
-    /// Centres of the grains and fixed discs at the last build, m.
+    /// Centres of the grains and fixed discs when the list was last built, m.
     centres: Vec<DVec2>,
     /// Pairs of discs, in the order in which the search found them.
     #[serde(skip)]
     pairs: Vec<(u32, u32)>,
-    /// Grain i has the candidates `others[starts[i] .. starts[i + 1]]`, in increasing order.
+    /// Start indices in `others`: grain i has the candidates `others[starts[i] .. starts[i + 1]]`, in increasing
+    /// order.
     starts: Vec<u32>,
     others: Vec<u32>,
 }
@@ -136,8 +138,9 @@ impl Candidates {
         Ok(Self { skins, centres, starts, others, ..whole })
     }
 
-    /// Returns the unit normal of a feature towards `centre`, and the distance of `centre` from the feature (m), as
-    /// in [`Feature::distance`]. With periodic borders, the nearest image of the feature counts.
+    /// Returns the unit normal of a feature (half-space, segment or polygon) towards `centre`, and the distance of
+    /// `centre` from the feature (m), as in [`Feature::distance`]. With periodic borders, the nearest periodic image
+    /// of the feature counts.
     #[inline]
     pub(crate) fn distance(
         &self,
@@ -156,19 +159,19 @@ impl Candidates {
         &self.features
     }
 
-    /// Finds the corners that boundaries share again, after the motion of a boundary has changed.
+    /// Searches again for the corners that boundaries share, after the motion of a boundary has changed.
     pub(crate) fn find_seams(&mut self, world: &World) {
         seam_search::find(&mut self.features, &self.boundary_of, world);
     }
 
-    /// Returns the index of the boundary to which a feature belongs.
+    /// Returns the index of the boundary to which a feature (half-space, segment or polygon) belongs.
     pub(crate) fn boundary_of(&self, feature: usize) -> usize {
         self.boundary_of[feature]
     }
 
-    /// Moves the features with their boundaries, which have just moved. `carry_of` returns the displacement of the
-    /// boundary with a given index, or `None` for a boundary at rest. Fixed discs have moved by at most
-    /// `way_of_discs` (m).
+    /// Moves the features (half-spaces, segments, polygons) with their boundaries, which have just moved. `carry_of`
+    /// returns the displacement of the boundary with a given index, or `None` for a boundary at rest. Fixed discs
+    /// have moved by at most `way_of_discs` (m).
     pub(crate) fn follow<'a>(
         &mut self,
         world: &World,
@@ -193,7 +196,7 @@ impl Candidates {
         self.way_of_discs += way_of_discs;
     }
 
-    /// Records that images beyond a sheared border have moved by `way` (m) relative to their discs.
+    /// Adds `way` (m) to the displacement of periodic images beyond a sheared border relative to their discs.
     pub(crate) fn slide(&mut self, way: f64) {
         self.way_of_images += way.abs();
     }
@@ -203,12 +206,13 @@ impl Candidates {
         self.reach.gap_tolerance
     }
 
-    /// Returns the candidates of the grain `index`: the numbers of their second bodies, in increasing order.
+    /// Returns the numbers of the bodies with which the grain `index` forms candidate pairs, in increasing order.
     pub fn of(&self, index: usize) -> &[u32] {
         &self.others[self.starts[index] as usize..self.starts[index + 1] as usize]
     }
 
-    /// Rebuilds the list if the grains have moved too far for the present list. Returns true if it was rebuilt.
+    /// Rebuilds the list of candidates if the grains have moved so far that the present list may be incomplete.
+    /// Returns true if the list was rebuilt.
     pub fn update<const AXES: usize>(&mut self, world: &World) -> bool {
         self.update_ahead::<AXES>(world, |_| 0.0, 0.0)
     }
@@ -244,9 +248,9 @@ impl Candidates {
         !still_good
     }
 
-    /// Sets each skin to at least twice the expected displacement, so that the list can be used for more than one
-    /// step. `of_grain` returns the displacement of a grain and `of_others` is the displacement of fixed discs and
-    /// features, m.
+    /// Sets the skin (search margin) of each body to at least twice its expected displacement, so that the list can
+    /// be used for more than one step. `of_grain` returns the displacement of a grain, and `of_others` is the
+    /// displacement of fixed discs and features (half-spaces, segments, polygons), m.
     fn set_skins(&mut self, grains: usize, of_grain: impl Fn(usize) -> f64, of_others: f64) {
         let usual = 0.5 * self.reach.skin;
         self.skin_of_features = usual.max(2.0 * of_others);
@@ -299,7 +303,7 @@ impl Candidates {
         }
         self.others.clear();
         self.others.resize(self.pairs.len(), 0);
-        // Fill each range from its start. Meanwhile its start moves to its end.
+        // Fill each range from its start. While a range is filled, its stored start moves to its end.
         for &(first, second) in &self.pairs {
             let place = &mut self.starts[first as usize];
             self.others[*place as usize] = second;
@@ -313,7 +317,8 @@ impl Candidates {
         }
     }
 
-    /// Adds the features within reach of each grain to the candidates of that grain.
+    /// Adds the features (half-spaces, segments, polygons) within reach of each grain to the candidates of that
+    /// grain.
     fn add_features(&mut self, world: &World) {
         if self.features.is_empty() {
             return;
@@ -377,7 +382,7 @@ mod tests {
         assert!(candidates.update::<2>(&world));
         let at_rest = candidates.others.len();
         let fast = 777;
-        // The fast grain is a candidate with all others, and no other pair becomes a candidate.
+        // The fast grain forms a candidate pair with every other grain. No other new pair becomes a candidate.
         let way = |grain: usize| if grain == fast { 1e3 } else { 0.0 };
         assert!(candidates.update_ahead::<2>(&world, way, 0.0));
         assert_eq!(candidates.others.len(), at_rest + count - 1);
@@ -396,7 +401,8 @@ mod tests {
             candidates.update::<2>(&world);
             assert!(candidates.others.len() < 24 * count, "{}", candidates.others.len());
         }
-        // The same limit is valid next to one disc that is as large as all the other discs together.
+        // The limit on the number of candidates is also valid next to one disc that is as large as all the other
+        // discs together.
         let count = 4_000;
         let mut world = rows(count, &[1e-3], 1.0);
         let large = Grain::at_rest(DVec2::new(-2.0, 0.0), 2.0);

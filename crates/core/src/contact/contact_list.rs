@@ -44,31 +44,33 @@ pub struct ContactList {
     parts: Vec<ContactColumns>,
     /// True if the list also contains pairs that do not touch yet (pairs with a gap).
     looks_ahead: bool,
-    /// Index of the present step. Contacts that are found from now on record it.
+    /// Index of the present step, which contacts record when they are found.
     step: u64,
-    /// Sums of the impulses that each pair transmitted in a step that is divided into pieces. Empty if the step is
-    /// undivided.
+    /// Sums of the impulses that each pair transmits in a step that is divided into shorter steps (pieces). Empty if
+    /// the step is undivided.
     sums: StepSums,
-    /// True if the impulses of the present step are summed, because the step is divided into pieces.
+    /// True if the impulses of the present step are summed, because it is divided into shorter steps (pieces).
     #[serde(skip)]
     is_summed_up: bool,
 }
 
 impl ContactList {
-    /// Begins the step with this index. Contacts found from now on record the index, and the sums of the previous
-    /// step are cleared.
+    /// Begins the step with this index. Contacts found from now on record the index. The sums of the previous step
+    /// are cleared.
     pub(crate) fn begin_step(&mut self, step: u64) {
         self.step = step;
         self.sums.clear();
         self.is_summed_up = false;
     }
 
-    /// Declares that the present step is divided into pieces, so that its impulses are summed.
+    /// Declares that the present step is divided into shorter steps (pieces), so that the impulses of these are
+    /// summed.
     pub(crate) fn begin_sums(&mut self) {
         self.is_summed_up = true;
     }
 
-    /// Adds the impulses of one piece of a divided step to the sums of the step. Does nothing in an undivided step.
+    /// Adds the impulses of the present piece to the sums of the step if the step is divided into shorter steps
+    /// (pieces). Does nothing in an undivided step.
     pub(crate) fn sum_up(&mut self) {
         if self.is_summed_up {
             for index in 0..self.now.contacts.len() {
@@ -84,18 +86,20 @@ impl ContactList {
         self.sums.add(Transmitted::of(contacts[index], found_in[index], normal, impulse));
     }
 
-    /// Returns the total impulse that the pair of a contact transmitted in a divided step.
+    /// Returns the total impulse that the pair of a contact has transmitted in the present step, which is divided
+    /// into shorter steps (pieces).
     pub(crate) fn sum_of(&self, contact: &Contact) -> Impulse {
         self.sums.of(contact.pair())
     }
 
-    /// True if sums exist. Then the sums belong to the whole step, and the impulses only to its last piece.
+    /// True if sums of impulses over the parts of the step exist. Then the sums belong to the whole step, and the
+    /// impulses in the list only to its last part.
     pub(crate) fn has_sums(&self) -> bool {
         !self.sums.pairs.is_empty()
     }
 
-    /// Returns the impulses transmitted in the last step, sorted by pair, with each pair once. For a divided step
-    /// these are the sums over its pieces.
+    /// Returns the impulses transmitted in the last step, sorted by pair, with each pair once. If the step was
+    /// divided into shorter steps (pieces), these are the sums over the pieces.
     pub(crate) fn transmitted_in_step(&self) -> impl Iterator<Item = Transmitted> + '_ {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
         let is_whole = !self.has_sums();
@@ -150,7 +154,7 @@ impl ContactList {
         &mut self.now.rolling
     }
 
-    /// Mutable impulses, N·s, one per contact, to be filled in by the solver.
+    /// The impulses, N·s, one per contact, mutable. The solver fills them in.
     pub fn impulses_mut(&mut self) -> &mut [Impulse] {
         &mut self.now.impulses
     }
@@ -193,8 +197,8 @@ impl ContactList {
         !self.looks_ahead || self.now.bonds[index].alive
     }
 
-    /// Clears the memories, rolling moments and sums. Called when the stepper changes, because the new stepper did
-    /// not write them.
+    /// Clears the memories of the stepper, the rolling moments and the sums of impulses. Called when the stepper
+    /// changes, because the new stepper did not write these data.
     pub(crate) fn forget(&mut self) {
         self.now.memories.fill(ContactMemory::default());
         self.now.rolling.clear();
@@ -261,8 +265,9 @@ impl ContactList {
             && found_in.iter().all(is_past)
     }
 
-    /// Finds the contacts at the present positions: candidate pairs with a gap below the tolerance. A contact that
-    /// existed in the previous step starts from its previous impulses and memory. All other contacts start from zero.
+    /// Finds the contacts at the present positions: candidate pairs with a gap below the gap tolerance. A contact
+    /// that existed in the previous step starts from its previous impulses and memory. All other contacts start from
+    /// zero.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
         self.looks_ahead = false;
         let gap_tolerance = candidates.gap_tolerance();

@@ -1,4 +1,5 @@
-//! Fixed shapes, divided into features. A disc touches each feature in at most one point.
+//! Boundaries (fixed shapes), divided into features: half-spaces, segments and convex polygons. A disc touches each
+//! feature in at most one point.
 
 use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
@@ -8,7 +9,7 @@ use super::seams::{Seams, nearest_corner};
 use crate::error::{Error, Result};
 use crate::world::{Boundary, Carry};
 
-/// A part of a boundary that a disc touches in at most one point.
+/// A half-space, segment or convex polygon that is a part of a boundary. A disc touches it in at most one point.
 #[derive(Clone, Debug)]
 pub(crate) enum Feature {
     /// A half-space.
@@ -18,9 +19,9 @@ pub(crate) enum Feature {
         /// The half-space with the same normal, moved so that its surface passes through the origin.
         shape: HalfSpace,
     },
-    /// A segment, solid from both sides. Neighbouring segments of a polyline share a corner. Only the later segment
-    /// reports a contact with it, and only if the corner is the nearest point of both segments. Otherwise an inner
-    /// point of one of the segments is nearer.
+    /// A segment that discs can touch from both sides. Neighbouring segments of a polyline share a corner. Only the
+    /// later segment reports a contact with this corner, and only if the corner is the nearest point of both
+    /// segments. Otherwise an inner point of one of the segments is nearer.
     Segment {
         /// The segment.
         shape: Segment,
@@ -41,7 +42,7 @@ pub(crate) enum Feature {
 }
 
 impl Feature {
-    /// Divides a boundary into features and appends these to `features`.
+    /// Divides a boundary into features (half-spaces, segments, polygons) and appends them to `features`.
     ///
     /// # Errors
     /// If a part of the boundary is not a valid shape. The error names the boundary (`field`) and that part.
@@ -168,7 +169,8 @@ impl Feature {
     }
 
     /// Returns the distance of `centre` from the surface, m, negative inside solids. Unlike [`Self::distance`], this
-    /// includes corners that another feature reports at present, because this feature may report them a moment later.
+    /// includes corners that another feature (part of a boundary) reports at present, because this feature may report
+    /// them a moment later.
     pub(crate) fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
@@ -183,7 +185,7 @@ impl Feature {
     }
 
     /// Returns the unit normal towards `centre`, and the distance of `centre` from the surface (m, negative inside
-    /// solids). `None` if another feature reports the nearest point.
+    /// solids). `None` if the nearest point is a corner that another feature (part of a boundary) reports.
     pub(crate) fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
         match self {
             Feature::HalfSpace { point, shape } => {
@@ -267,9 +269,10 @@ fn check_finite(points: &[DVec2], name: impl Fn(usize) -> String) -> Result<()> 
     }
 }
 
-/// Checks that corners go once around a convex polygon, anticlockwise. To turn left at each corner is not enough,
-/// because a pentagram also does so but goes around twice. So the function counts how often the direction of the
-/// sides passes from the lower into the upper half of the plane: once for a single round.
+/// Checks that the points are the corners of a convex polygon, once around and anticlockwise. It is not enough that
+/// the outline turns left at each corner, because the outline of a pentagram also does so but goes around twice. So
+/// the function also counts how often the direction of the sides passes from the lower into the upper half of the
+/// plane: once for a single round.
 fn check_convex(points: &[DVec2], field: &str) -> Result<()> {
     let count = points.len();
     if count < 3 {

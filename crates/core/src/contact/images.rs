@@ -17,12 +17,12 @@ use super::broad_phase::BroadPhase;
 use super::features::Feature;
 use crate::world::{Periodic, World};
 
-/// Offsets from a disc to those of its images that are searched, in periods. They are half of the images around the
-/// cell, because either disc of a pair across a border can be the disc in the cell.
+/// Offsets, in periods, from a disc to those of its periodic images that are searched. They are half of the images
+/// around the cell, because either disc of a pair across a border can be the disc in the cell.
 const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0, 1.0)];
 
-/// Calls `found` once for every pair of discs, given by their indices, whose nearest images are closer than the sum
-/// of their extents (radius plus skin, m). It is also called for some pairs that are farther apart.
+/// Calls `found` once for every pair of discs, given by their indices, whose nearest periodic images are closer than
+/// the sum of their extents (radius plus search margin, m). It is also called for some pairs that are farther apart.
 pub(super) fn pairs<const AXES: usize>(
     broad_phase: &mut BroadPhase,
     periodic: Periodic,
@@ -35,7 +35,8 @@ pub(super) fn pairs<const AXES: usize>(
     let mut places: Vec<DVec2> = centres.iter().map(|&centre| periodic.wrap(centre)).collect();
     let mut extents: Vec<f64> = extents.collect();
     let size = DVec2::from(periodic.periods().map(|period| period.unwrap_or(0.0)));
-    // For each image, the index of its disc and the number of periods between disc and image along each axis.
+    // For each periodic image, the index of its disc and the number of periods between disc and image along each
+    // axis.
     let mut images: Vec<(u32, DVec2)> = Vec::new();
     for disc in 0..count {
         let place = places[disc];
@@ -52,8 +53,8 @@ pub(super) fn pairs<const AXES: usize>(
             extents.push(extents[disc]);
         }
     }
-    // A tree keeps its discs from search to search, so it needs a constant number of discs. Images change this
-    // number.
+    // A tree keeps its discs from search to search, so it needs a constant number of discs. The number of periodic
+    // images changes.
     broad_phase.forget_discs();
     broad_phase.pairs::<AXES>(&places, extents.iter().copied(), |first, second| {
         let image = |place: u32| (place as usize).checked_sub(count).map(|number| images[number]);
@@ -64,16 +65,16 @@ pub(super) fn pairs<const AXES: usize>(
             (Some(_), Some(_)) => return,
         };
         let [from, to] = discs.map(|disc| places[disc as usize]);
-        // The number of periods along each axis from the second disc to that image of it that is nearest to the first
-        // disc.
+        // The number of periods along each axis from the second disc to its periodic image that is nearest to the
+        // first disc.
         if periodic.whole(from - to) == told_by && discs[0] != discs[1] {
             found(discs[0], discs[1]);
         }
     });
 }
 
-/// Returns true if the disc at coordinate `at` (m) is so near to a border that its image `periods` periods away along
-/// this axis can be within `reach` (m) of another disc.
+/// Returns true if the disc at the coordinate `at` (m) is so near to a border that its periodic image, which is
+/// `periods` periods away along this axis, can be within `reach` (m) of another disc.
 fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> bool {
     match borders {
         _ if periods == 0.0 => true,
@@ -83,7 +84,8 @@ fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> 
     }
 }
 
-/// Returns the normal and the distance (m) of the nearest image of a feature, as in [`Feature::distance`].
+/// Returns the normal and the distance (m) of the nearest periodic image of a feature (half-space, segment or
+/// polygon), as in [`Feature::distance`].
 pub(super) fn distance(
     feature: &Feature,
     periodic: Periodic,
@@ -96,8 +98,8 @@ pub(super) fn distance(
     distances.min_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
-/// Returns the smallest [`Feature::distance_to_any_point`] (m) over the images of a feature. Without periodic borders
-/// the feature itself is the only image.
+/// Returns the smallest [`Feature::distance_to_any_point`] (m) over the periodic images of a feature (half-space,
+/// segment or polygon). Without periodic borders only the feature itself counts.
 pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DVec2) -> f64 {
     match world.periodic {
         Some(periodic) if !feature.is_half_space() => {
@@ -108,7 +110,7 @@ pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DV
     }
 }
 
-/// Returns the position of a disc in the cell, and the positions one period to each side, m.
+/// Returns the position of a disc in the periodic cell, and the positions one period to each side, m.
 fn places(periodic: Periodic, centre: DVec2) -> impl Iterator<Item = DVec2> {
     let centre = periodic.wrap(centre);
     periodic.around().map(move |by| centre + by)

@@ -43,13 +43,14 @@ impl ContactLaw {
         Self { friction, capture_speed, tip, cone }
     }
 
-    /// Returns this law with another capture speed, m/s.
+    /// Returns this law with another capture speed (the opening speed that cohesion cancels in one step), m/s.
     #[inline(always)]
     pub(crate) fn with_capture_speed(self, capture_speed: f64) -> Self {
         Self::new(self.friction, capture_speed, self.cone)
     }
 
-    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s. 0 in a scene without cohesion.
+    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s: the opening speed that cohesion cancels in one step. 0 in a scene
+    /// without cohesion.
     #[inline(always)]
     pub fn capture_speed(&self) -> f64 {
         self.capture_speed
@@ -60,7 +61,8 @@ impl ContactLaw {
         self.cone
     }
 
-    /// True if the whole shifted impulse σ bounds friction, because the tip of the cone is at 0.
+    /// True if the whole shifted impulse σ (normal impulse plus cohesion) bounds friction, because the tip of the
+    /// cone is at 0.
     #[inline(always)]
     pub(crate) fn all_rubs(&self) -> bool {
         self.tip == 0.0

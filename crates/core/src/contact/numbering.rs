@@ -1,4 +1,5 @@
-//! The joint numbering of all bodies: grains first, then fixed discs, then features of the boundaries.
+//! The joint numbering of all bodies: grains first, then fixed discs, then features (half-spaces, segments, polygons)
+//! of the boundaries.
 
 use crate::world::World;
 
@@ -30,13 +31,13 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Returns the numbering of a world.
+    /// Returns the joint numbering of the bodies of a world.
     pub fn of(world: &World) -> Self {
         Self { grains: world.grains.len(), fixed_discs: world.fixed_discs.len() }
     }
 
-    /// Returns the numbering of a world with this many grains and no fixed discs, for callers that need not
-    /// distinguish fixed discs from features.
+    /// Returns the joint numbering of a world with this many grains and without fixed discs, for callers that need
+    /// not distinguish fixed discs from features (parts of boundaries).
     pub(crate) fn of_grains(grains: usize) -> Self {
         Self { grains, fixed_discs: 0 }
     }

@@ -28,9 +28,9 @@ impl Contact {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Impulse {
-    /// Normal impulse P_n.
+    /// Normal impulse P_n, N·s.
     pub normal: f64,
-    /// Tangential impulse P_t.
+    /// Tangential impulse P_t, N·s.
     pub tangential: f64,
 }
 

@@ -5,7 +5,7 @@ use crate::world::{
     Cohesion, Grains, Material, PairNumbers, Parameters, Physics, World, materials_of,
 };
 
-/// The numbers of the contact law of one contact. A row is one contact in the problem of a step.
+/// The coefficients of the contact law of one contact. A contact is a row in the problem of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct RowNumbers {
     /// Friction coefficient μ.
@@ -18,13 +18,13 @@ pub struct RowNumbers {
     pub cohesion_per_mass: f64,
 }
 
-/// Contact laws by pairs of materials. A world has them if some pairs of its materials have numbers that differ from
-/// the parameters of the run.
+/// Contact laws by pairs of materials. A world has them if some pairs of its materials have coefficients that differ
+/// from the parameters of the run.
 #[derive(Clone, Debug)]
 pub(crate) struct PairLaws {
     /// Number of materials.
     count: usize,
-    /// The numbers of the pair of materials a and b are at index `count` · a + b.
+    /// The coefficients of the pair of materials a and b are at index `count` · a + b.
     numbers: Vec<PairNumbers>,
     /// Index of the material of each fixed disc. `of_boundary` has the index for each boundary.
     of_disc: Vec<u8>,
@@ -34,7 +34,7 @@ pub(crate) struct PairLaws {
 }
 
 impl PairLaws {
-    /// Returns the laws of a world. `None` if all contacts have the numbers of the parameters.
+    /// Returns the laws of a world. `None` if all contacts have the coefficients of the parameters.
     pub(crate) fn of(world: &World, parameters: &Parameters, physics: Physics) -> Option<Self> {
         let World { materials, pairs, .. } = world;
         if pairs.is_empty() {
@@ -56,7 +56,7 @@ impl PairLaws {
         })
     }
 
-    /// Returns the numbers of the law of a contact. `effective_mass` is its effective mass, kg.
+    /// Returns the coefficients of the law of a contact. `effective_mass` is the effective mass of the contact, kg.
     pub(crate) fn numbers(
         &self,
         world: &World,

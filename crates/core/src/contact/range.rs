@@ -1,4 +1,5 @@
-//! The law `range`: a bond that exists until it has been stretched by δ_c, whatever the time step.
+//! The law `range`: a bond that exists until it has been stretched by the debonding distance δ_c, whatever the time
+//! step.
 //!
 //! **The law.** Two grains that have touched are bonded. A bond pulls with at most the cohesion force C₀ (N). While
 //! the bond is open, it pulls with exactly C₀. It breaks when it has opened by the debonding distance δ_c (m), so
@@ -116,7 +117,8 @@ mod tests {
     #[test]
     fn a_load_below_the_cohesion_holds_and_a_shock_takes_the_work() {
         assert_eq!(bound(1e-3, 0.0, 1.9), CAPTURE_SPEED);
-        // v² = 2·(C/Δt)·D gives the escape speed v.
+        // The escape speed v has v² = 2·(C/Δt)·D, with the capture speed C, the time step Δt and the remaining
+        // opening D.
         let escape = (2.0 * CAPTURE_SPEED / TIME_STEP_SECS * 1e-3f64).sqrt();
         assert_eq!(bound(1e-3, 0.99 * escape, 0.0), CAPTURE_SPEED);
         let speed = 1.5 * escape;

@@ -8,15 +8,15 @@ use super::seams::{Piece, Seam};
 use crate::world::World;
 
 /// Largest distance of a corner from another boundary, in mean diameters, at which the two share the corner. If the
-/// value is smaller, corners that are equal except for rounding slow sliding discs down. If it is larger, discs do
-/// not feel intended small steps in a floor.
+/// value is smaller, corners that are equal except for rounding slow down discs that slide over them. If it is
+/// larger, discs do not feel intended small steps in a floor.
 const APART_IN_DIAMETERS: f64 = 1e-9;
 
-/// Finds the corners that features of different boundaries share and stores them in the features. Feature `k` is a
-/// part of boundary `boundary_of[k]`.
+/// Finds the corners that features (segments, polygons) of different boundaries share and stores them in the
+/// features. Feature `k` is a part of boundary `boundary_of[k]`.
 pub(super) fn find(features: &mut [Feature], boundary_of: &[usize], world: &World) {
     let tolerance = APART_IN_DIAMETERS * world.mean_diameter;
-    // Features that move differently share no corners.
+    // Boundaries that move differently do not share corners.
     let mut carried_by = vec![None; world.boundaries.len()];
     for (number, motion) in world.motions.iter().enumerate() {
         if motion.course.is_some() || motion.drive.is_some() {
@@ -72,8 +72,8 @@ fn piece(feature: &Feature) -> Piece {
     }
 }
 
-/// Returns the distance of a point from the surface of a feature, m, not negative. Points inside a polygon also have
-/// a positive distance.
+/// Returns the distance of a point from the surface of a feature (half-space, segment or polygon), m. It is positive
+/// outside and inside.
 fn distance_from_surface(feature: &Feature, place: DVec2) -> f64 {
     match feature {
         Feature::ConvexPolygon { sides, .. } => {
@@ -91,7 +91,8 @@ mod tests {
     use super::*;
     use crate::world::Boundary;
 
-    /// Returns the features of these boundaries with their shared corners, in a world without motions.
+    /// Returns the features (half-spaces, segments, polygons) of these boundaries with their shared corners, in a
+    /// world without motions.
     fn features(boundaries: Vec<Boundary>) -> Vec<Feature> {
         use crate::contact::{Candidates, Reach};
         use crate::world::{Grain, Grains, Gravity};

@@ -25,7 +25,7 @@ use crate::world::Carry;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seams(pub(super) Vec<Seam>);
 
-/// A corner of one feature that lies on a feature of another boundary (the other piece).
+/// A corner of one feature (segment or polygon) that lies on a feature of another boundary, called the other piece.
 #[derive(Clone, Debug)]
 pub(super) struct Seam {
     /// Index of the corner in its own feature.
@@ -34,7 +34,7 @@ pub(super) struct Seam {
     pub other: Piece,
     /// Index of the corner in the other piece. `None` if the corner lies on a side of that piece.
     pub other_corner: Option<usize>,
-    /// True if the other piece has the larger index.
+    /// True if the feature of this corner comes before the other piece in the list of features.
     pub is_earlier: bool,
 }
 
@@ -47,13 +47,14 @@ pub(super) enum Piece {
 }
 
 impl Seams {
-    /// True if no corner of the feature lies on another piece.
+    /// True if no corner of the feature (segment or polygon) lies on a feature of another boundary.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Returns true if this feature reports the contact of a disc with its corner `corner`. The disc has its centre
-    /// at `centre` (m), and the corner is the point of this feature that is nearest to the disc.
+    /// Returns true if this feature (segment or polygon) reports the contact of a disc with its corner number
+    /// `corner`. The disc has its centre at `centre` (m), and the corner is the point of this feature that is nearest
+    /// to the disc.
     pub(super) fn reports(&self, corner: usize, centre: DVec2) -> bool {
         self.0.iter().filter(|seam| seam.corner == corner).all(|seam| {
             let nearest = match &seam.other {
@@ -65,7 +66,8 @@ impl Seams {
         })
     }
 
-    /// Moves the stored shapes of the other pieces. Pieces that share a corner always move together.
+    /// Moves the stored shapes of those features that share corners with this feature. Features that share a corner
+    /// always move together.
     pub(super) fn carry(&mut self, carry: &Carry) {
         for Seam { other, .. } in &mut self.0 {
             let segments = match other {

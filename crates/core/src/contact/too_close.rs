@@ -16,8 +16,8 @@ use crate::world::World;
 /// Smallest allowed distance between the centres of a grain and another disc, in radii of the smaller disc. In
 /// compressed packings the distance is more than 1.8 in practice. Two discs of the scene `overlap` start with 1.
 const LEAST_DISTANCE_IN_RADII: f64 = 0.5;
-/// Largest number of fixed discs that may be within that distance of a fixed disc. Overlapping fixed discs can form a
-/// smooth wall, but a grain would touch all of them at once.
+/// Largest number of fixed discs that may be closer than [`LEAST_DISTANCE_IN_RADII`] to one fixed disc. Overlapping
+/// fixed discs can form a smooth wall, but a grain would touch all of them at once.
 const MOST_FIXED_TOO_CLOSE: usize = 1000;
 
 /// Checks that no grain is too close to another disc, and that not too many fixed discs are close together. Time and
@@ -32,8 +32,8 @@ pub(crate) fn check_distances(world: &World) -> Result<()> {
         grains.positions.iter().copied().zip(grains.radii.iter().copied()).chain(fixed).collect();
     let mut found = first_too_close(&discs, grains.len());
     if let Some(periodic) = world.periodic {
-        // Two discs that are close to each other across a border are neighbours in the cell after a shift by half a
-        // period.
+        // After a shift by half a period, two discs that were close to each other across a periodic border are
+        // neighbours inside the cell.
         let half = periodic.periods().map(|period| 0.5 * period.unwrap_or(0.0));
         for by in [DVec2::new(half[0], 0.0), DVec2::new(0.0, half[1]), DVec2::from(half)] {
             let shifted = discs.iter().map(|&(place, radius)| (periodic.wrap(place + by), radius));
@@ -63,7 +63,8 @@ fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize,
     levels.dedup();
     // For each disc, the indices of its cell along both axes and its own index.
     let mut places: Vec<([i64; 2], u32)> = Vec::with_capacity(discs.len());
-    // Largest radii first, so that the larger discs near a smaller disc are already known to keep their distance.
+    // Start with the largest radii, so that the larger discs near a smaller disc are already known to keep their
+    // distance.
     for &now in levels.iter().rev() {
         let width = f64::from_bits(now << 52).max(f64::MIN_POSITIVE);
         let cell = |centre: DVec2| [(centre.x / width).floor(), (centre.y / width).floor()];

@@ -1,5 +1,5 @@
-//! Sums of the impulses that pairs transmit in a step that is divided into pieces. The contacts are found again in
-//! each piece, and their normals turn from piece to piece, so the impulses must be added up.
+//! Sums of the impulses that pairs transmit in a step that is divided into shorter steps (pieces). The contacts are
+//! found again in each piece, and their normals turn from piece to piece, so the impulses must be added up.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -14,14 +14,15 @@ pub(crate) struct Transmitted {
     pub contact: Contact,
     /// Index of the step in which the pair was first found to touch.
     pub found_in: u64,
-    /// Sums of the normal and tangential impulses, each along the normal or tangent of its own moment, N·s.
+    /// Sums of the normal and of the tangential impulses, N·s. Each impulse acts along the normal or tangent at its
+    /// own time.
     pub sums: Impulse,
     /// Sum of the impulses on grain i as vectors, N·s.
     pub vector: DVec2,
 }
 
 impl Transmitted {
-    /// Returns the impulse of one contact, with its vector for the given unit normal.
+    /// Returns the entry of one contact: its impulse, and the impulse as a vector for the given unit normal.
     pub(crate) fn of(contact: Contact, found_in: u64, normal: DVec2, impulse: Impulse) -> Self {
         let vector = impulse.normal * normal + impulse.tangential * normal.perp();
         Self { contact, found_in, sums: impulse, vector }
@@ -54,7 +55,7 @@ impl StepSums {
         self.pairs.binary_search_by_key(&pair, |there| there.contact.pair())
     }
 
-    /// Adds an impulse to the sums of its pair.
+    /// Adds the impulse of a contact to the sums of its pair.
     pub(crate) fn add(&mut self, added: Transmitted) {
         let pair = added.contact.pair();
         let at_next = self.pairs.get(self.next).map(|there| there.contact.pair());

@@ -113,7 +113,7 @@ fn no_certificate_is_wrong() {
         for settings in variants(scene.settings()) {
             let mut scene = scene.clone();
             scene.set_settings(settings);
-            // Some steppers refuse the scene, so it is skipped.
+            // Some steppers do not support the scene. Such a combination is skipped.
             let Ok(mut run): Result<Simulation, _> = scene.simulation() else { continue };
             let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
             if is_driven && run.take_steps(STEPS_TO_TOUCH).is_err() {
@@ -150,8 +150,8 @@ fn no_certificate_is_wrong() {
     assert!(nearest > 0.5, "{nearest}: bounds that are twice too small would not be seen");
 }
 
-/// Visitor that solves a contact problem to this tolerance, in units of √(g d). It returns true if the solve
-/// converged, and the residual.
+/// Visitor that solves a contact problem to this tolerance on velocities, in units of √(g d) (g: gravity, d: mean
+/// diameter). It returns true if the solve converged, and the residual.
 struct Pressed(f64);
 
 impl ProblemVisitor for Pressed {

@@ -67,7 +67,7 @@ pub struct Scene {
     /// Materials of grains, fixed discs and boundaries.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Contact laws of pairs of materials. Pairs that are not listed have the numbers of the parameters.
+    /// Contact laws of pairs of materials. Pairs that are not listed have the coefficients of the parameters.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
     /// Shapes, other than discs, that grains cannot move.
@@ -410,7 +410,7 @@ pub struct DataSettings {
 }
 
 impl DataSettings {
-    /// Checks the time between frames. `field` is its name in error messages.
+    /// Checks the time between two frames of a recording. `field` is the name of this setting in error messages.
     ///
     /// # Errors
     /// If the time is outside its range.

@@ -12,8 +12,8 @@ use crate::solver::{
 };
 use crate::world::Grain;
 
-/// Solves with a smaller distance from a solution than this, in √(g d), are not tested, because the reported error is
-/// known to be too large for them.
+/// Smallest distance from a solution, in √(g d) (g: gravity, d: mean diameter), of the solves that are tested. For
+/// smaller distances the reported error is known to be too large.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 
 /// One solve: its description, its reported velocity error (`told`), and its actual distance from a solution (`off`),
@@ -99,7 +99,7 @@ impl ProblemVisitor for Judge<'_> {
 /// Solves the given steps of a scene with all solvers and returns the comparisons.
 fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     let mut judged = Vec::new();
-    // Some steppers refuse the scene, so it is skipped.
+    // Some steppers do not support the scene. Such a combination is skipped.
     let Ok(mut run) = scene.simulation() else { return judged };
     for &step in steps {
         while run.observables().step < step {

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::scene::sizes::Sizes;
 use crate::setting::words;
 
-/// Room for a random displacement of the largest disc on the lattice of the rain, in diameters.
+/// Room for a random displacement of the largest disc on the lattice from which the grains rain, in diameters.
 const JITTER: f64 = 0.1;
 
 words! {
@@ -45,7 +45,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 
 impl Default for NewPile {
     /// The 138 grains of the paper. The seed is one of nine that were tried. With this seed, single runs of the
-    /// paper's Fig. 4 show the effects that means over many initial states show.
+    /// paper's Fig. 4 show the same effects as means over many initial states.
     fn default() -> Self {
         Self {
             grains: 138,

@@ -8,7 +8,7 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 /// Number of standard deviations at which normal and log-normal distributions are cut off. With a larger number, a
-/// few extreme grains would decide how wide the lattice of the rain is.
+/// few extreme grains would decide how wide the lattice is from which the grains rain.
 const CUT: f64 = 2.5;
 /// Allowed forms of a distribution, for error messages.
 const FORM: &str = "uniform:S (0 ≤ S ≤ 0.8), normal:S (0 < S ≤ 0.3), lognormal:S (0 < S ≤ 0.5), \

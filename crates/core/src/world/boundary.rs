@@ -42,9 +42,9 @@ pub enum Boundary {
     },
     /// A thin wall from one point to another. Grains can touch it from both sides.
     Segment {
-        /// One end.
+        /// One end of the wall.
         from: DVec2,
-        /// The other end.
+        /// The other end of the wall.
         to: DVec2,
     },
     /// A chain of thin walls, end to end. Grains can touch it from both sides.

@@ -187,8 +187,8 @@ impl World {
         }
     }
 
-    /// Returns the unit vector of the gravity given in the scene. Grains that leave the scene in this direction count
-    /// as lost. `None` if gravity turns by itself, is not uniform, or is zero.
+    /// Returns the direction, as a unit vector, of the gravity given in the scene. Grains that leave the scene in
+    /// this direction count as lost. `None` if gravity turns by itself, is not uniform, or is zero.
     pub(crate) fn listed_down(&self) -> Option<DVec2> {
         let listed = match (&self.gravity_turn, self.gravity) {
             (Some(turning), _) if turning.turn.is_none() => turning.listed,

@@ -26,7 +26,7 @@ pub struct Material {
     pub fixed_discs: Vec<usize>,
 }
 
-/// The contact law of a pair of materials. A missing number is taken from the parameters of the scene.
+/// The contact law of a pair of materials. A missing coefficient is taken from the parameters of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialPair {
@@ -61,7 +61,7 @@ pub(crate) enum Cohesion {
     Force(f64),
 }
 
-/// The numbers of the contact law of one pair of materials.
+/// The coefficients of the contact law of one pair of materials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PairNumbers {
     /// Friction coefficient μ.
@@ -75,8 +75,8 @@ pub(crate) struct PairNumbers {
 }
 
 impl PairNumbers {
-    /// Returns the numbers of `pair`. Numbers that the pair does not give are taken from the parameters. Friction,
-    /// rolling friction and cohesion are 0 if `physics` excludes friction, rotation or cohesion.
+    /// Returns the coefficients of `pair`. Coefficients that the pair does not give are taken from the parameters.
+    /// Friction, rolling friction and cohesion are 0 if `physics` excludes friction, rotation or cohesion.
     pub(crate) fn new(
         pair: Option<&MaterialPair>,
         parameters: &Parameters,

@@ -35,7 +35,7 @@ use crate::error::{Error, Result};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct World {
-    /// The moving discs.
+    /// The grains: discs that move.
     pub grains: Grains,
     /// Discs that grains cannot move, such as the rough base of the pile.
     pub fixed_discs: Vec<Disc>,
@@ -53,7 +53,7 @@ pub struct World {
     /// The materials of grains, fixed discs and boundaries.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Contact laws of pairs of materials. Pairs that are not listed have the numbers of the parameters.
+    /// Contact laws of pairs of materials. Pairs that are not listed have the coefficients of the parameters.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
     /// The mean diameter d, m. It is the unit of length for settings in diameters.
@@ -115,8 +115,8 @@ impl World {
         }
     }
 
-    /// Returns the speed along x, m/s, of the image of grain `j` that is nearest to grain `i`, relative to grain `j`
-    /// itself. 0 without sheared borders.
+    /// Returns the speed along x, m/s, of the periodic image of grain `j` that is nearest to grain `i`, relative to
+    /// grain `j` itself. 0 without sheared borders.
     #[inline]
     pub(crate) fn speed_of_image(&self, i: usize, j: usize) -> f64 {
         let places = &self.grains.positions;

@@ -48,7 +48,7 @@ pub enum MotionCourse {
     Straight {
         /// Direction of the motion. Its length does not matter.
         direction: DVec2,
-        /// Speed along the direction, m/s.
+        /// Speed along the given direction, m/s.
         speed: f64,
         /// Remaining distance, m. Unlimited if it is missing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -56,7 +56,7 @@ pub enum MotionCourse {
     },
     /// Rotation about a pivot at constant angular velocity.
     Rotation {
-        /// Pivot, m.
+        /// Position of the pivot, m.
         pivot: DVec2,
         /// Angular velocity, rad/s, positive anticlockwise.
         rate: f64,
@@ -77,7 +77,7 @@ pub enum MotionCourse {
     },
     /// Oscillation about a pivot. The angle depends on time like the displacement of [`MotionCourse::Sine`].
     Swing {
-        /// Pivot, m.
+        /// Position of the pivot, m.
         pivot: DVec2,
         /// Amplitude, rad.
         amplitude: f64,
@@ -97,7 +97,7 @@ pub enum MotionCourse {
     },
     /// Rotation about a pivot, with angles from a table, linear between its rows.
     AngleTable {
-        /// Pivot, m.
+        /// Position of the pivot, m.
         pivot: DVec2,
         /// Times in increasing order, s.
         times_secs: Vec<f64>,
@@ -113,10 +113,10 @@ impl Motion {
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
     }
 
-    /// Returns the velocity before a step of `secs` seconds, from which a change to the velocity of that step is
-    /// smooth. For a sine or a swing it is the mean over the `secs` seconds before the step. For other courses it is
-    /// the velocity of the step itself, because their velocity changes only by jumps, and a jump of a wall's velocity
-    /// strikes the grains.
+    /// Returns the velocity that the bodies have just before a step of `secs` seconds. A sine or a swing moves
+    /// smoothly, so for these courses it is the mean velocity over the `secs` seconds before the step. The velocity
+    /// of other courses changes only by jumps, and after a jump the wall must strike the grains with its new
+    /// velocity. So for these courses it is the velocity of the step itself.
     pub(crate) fn velocity_before(&self, secs: f64) -> RigidVelocity {
         match &self.course {
             Some(course @ (MotionCourse::Sine { .. } | MotionCourse::Swing { .. })) => {
@@ -133,7 +133,8 @@ impl Motion {
             (None, Some(drive)) => Some(drive.direction),
             (Some(MotionCourse::Straight { direction, .. }), None) => Some(*direction),
             (Some(MotionCourse::Sine { amplitude, .. }), None) => Some(*amplitude),
-            // A course across the drive makes the surface rub against grains, even while the drive is at rest.
+            // The course moves the bodies across the force of the drive, so their surface rubs against grains even
+            // while the force does not move it.
             (Some(_), Some(_)) => None,
             _ => (velocity.spin == 0.0).then_some(velocity.velocity),
         }
@@ -158,7 +159,7 @@ impl Motion {
             }
     }
 
-    /// Advances the stored progress by `secs` seconds, in which the bodies moved by `carry`.
+    /// Advances the stored progress by `secs` seconds, in which the bodies moved by the displacement `carry`.
     pub(crate) fn advance(&mut self, secs: f64, carry: &Carry) {
         self.elapsed_secs += secs;
         self.turned += carry.angle;
@@ -259,7 +260,7 @@ where
 pub struct Drive {
     /// Direction in which the force acts. Its length does not matter.
     pub direction: DVec2,
-    /// Force along the direction, N.
+    /// Force along the direction of the drive, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
     /// Pressure, N/m: force along the direction per metre of `width`. An alternative to `force`.
@@ -273,19 +274,19 @@ pub struct Drive {
     /// Damping force per speed, kg/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damping: f64,
-    /// Speed along the direction, m/s.
+    /// Speed along the direction of the drive, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed: f64,
 }
 
 impl Drive {
-    /// Returns the unit vector of the direction.
+    /// Returns the direction of the drive as a unit vector.
     pub fn axis(&self) -> DVec2 {
         self.direction.normalize_or_zero()
     }
 
-    /// Returns the force along the direction, N. With a pressure, it depends on the periodic cell unless `width` is
-    /// given.
+    /// Returns the force of the drive along its direction, N. If the drive has a pressure without a `width`, the
+    /// force depends on the periodic cell.
     pub fn force_in(&self, periodic: Option<Periodic>) -> f64 {
         let width = self.width.or_else(|| self.period_across(periodic));
         self.force.unwrap_or_else(|| self.pressure.unwrap_or(0.0) * width.unwrap_or(0.0))
@@ -305,7 +306,7 @@ impl Drive {
         }
     }
 
-    /// Kinetic energy ½mv², J.
+    /// Kinetic energy ½mv² of the driven bodies, J (m: mass, v: speed).
     pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.mass * self.speed * self.speed
     }
@@ -408,7 +409,7 @@ impl Carry {
         self.by.length() + self.angle.abs() * reach
     }
 
-    /// True if the displacement is not zero.
+    /// True if the displacement (translation or rotation) is not zero.
     pub(crate) fn goes(&self) -> bool {
         self.by != DVec2::ZERO || self.angle != 0.0
     }

@@ -149,7 +149,8 @@ pub(super) fn check_table(
 }
 
 impl Drive {
-    /// Checks the numbers of a drive; `field` is its name in messages.
+    /// Checks the numbers of a drive (a force or pressure that moves boundaries). `field` is the name of the drive in
+    /// error messages.
     fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
         let refuse = |name: &str, found: String, allowed: &str| {
             Err(Error::value(format!("{field}.{name}"), found, allowed))

@@ -105,8 +105,9 @@ settings! {
             "Part of the normal force that bounds friction", {
             needs: Needs::Friction,
         }
-        /// The moment M of a contact obeys |M| ≤ μ_r R N, with the rolling friction μ_r, the reduced radius R from
-        /// 1/R = 1/r_i + 1/r_j, and that part N of the normal force that bounds friction.
+        /// The moment M (N·m) of a contact obeys |M| ≤ μ_r R N, with the coefficient of rolling friction μ_r, the
+        /// reduced radius R (m) of the two bodies from 1/R = 1/r_i + 1/r_j, and that part N (N) of the normal force
+        /// that bounds friction.
         #[serde(default, skip_serializing_if = "is_zero")]
         rolling_friction: f64 = 0.0, "rolling-friction" ("MU_R"),
             "Rolling friction of moreau, at least 0: the largest moment against rolling, divided by the reduced radius \

@@ -187,8 +187,8 @@ impl Periodic {
         self.shear_rate * self.y.map_or(0.0, period)
     }
 
-    /// Returns the speed along x of the nearest image of a disc relative to the disc itself, m/s. `offset` (m) is the
-    /// vector from the disc to the disc that looks for the nearest image.
+    /// Returns the speed along x of a periodic image of a disc relative to the disc itself, m/s. The image is the one
+    /// that is nearest to another disc, and `offset` (m) is the vector from the disc to this other disc.
     #[inline]
     pub(crate) fn speed_of_image(self, offset: DVec2) -> f64 {
         self.border_speed() * periods_in(self.y, offset.y)
@@ -249,7 +249,7 @@ mod tests {
         }
         let inside = 0.123_456_789;
         assert_eq!(CELL.wrap(DVec2::new(inside, 0.0)).x.to_bits(), inside.to_bits());
-        // A point that differs from the left border only by rounding is mapped to this border or stays next to it.
+        // A point that is outside the left border only by rounding must still be mapped into the cell.
         let hair = CELL.wrap(DVec2::new(f64::from_bits((-0.3f64).to_bits() + 1), 0.0));
         assert!((-0.3..0.7).contains(&hair.x));
         assert!(CELL.wrap(DVec2::NAN).x.is_nan());

@@ -105,7 +105,7 @@ impl Wrapping {
         if !(low.is_finite() && high.is_finite() && period.is_finite()) {
             return Err(Error::value(self.field, found(), "two finite numbers of m"));
         }
-        // A disc must not interact with two images of the same other disc.
+        // A disc must not interact with two periodic images of the same other disc.
         let largest_diameter = 2.0 * largest_radius;
         let felt = FELT_IN_DIAMETERS * mean_diameter;
         let least = (LEAST_DIAMETERS * largest_diameter).max(2.0 * (largest_diameter + felt));

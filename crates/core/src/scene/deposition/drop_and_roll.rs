@@ -45,18 +45,19 @@ const TOLERANCE: f64 = 1e-7;
 const DAMPING_BY_LAYERS: f64 = 7.0;
 /// Largest fraction of the velocities that the medium removes per step.
 const MOST_DAMPING: f64 = 0.2;
-/// Median speed of the grains, in √(g·d), below which the pile no longer oscillates and the medium becomes thin.
+/// Median speed of the grains, in √(g·d) (g: gravity, d: mean diameter), below which the pile no longer oscillates
+/// and the medium becomes thin.
 const STILL_SPEED: f64 = 1e-3;
-/// Terminal speed of a grain that falls through the thin medium, in √(g·d).
+/// Terminal speed of a grain that falls through the thin medium, in √(g·d) (g: gravity, d: mean diameter).
 const TERMINAL_SPEED: f64 = 0.5;
-/// Mean kinetic energy of a grain, in m g d, below which the medium is removed. After that, a pile whose energy stays
-/// below ten times this value is at rest.
+/// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter), below which the medium is removed. After
+/// that, a pile whose energy stays below ten times this value is at rest.
 const REST_ENERGY: f64 = 1e-7;
-/// Speed, in √(g·d), above which a grain counts as falling. In a pile at rest at most one grain per
-/// [`GRAINS_A_MOVING_ONE`] grains is faster.
+/// Speed, in √(g·d) (g: gravity, d: mean diameter), above which a grain counts as falling. In a pile at rest at most
+/// one grain per [`GRAINS_A_MOVING_ONE`] grains is faster.
 const REST_SPEED: f64 = 1e-2;
-/// Number of grains per moving grain that is allowed at rest. In a large pile, grains somewhere always tip over, so
-/// waiting for the last grain would take longer the larger the pile is.
+/// Number of grains for each grain that may still move in a pile at rest. In a large pile, grains somewhere always
+/// tip over, so waiting for the last grain would take longer the larger the pile is.
 const GRAINS_A_MOVING_ONE: usize = 10_000;
 const STEPS_PER_LOOK: u32 = 10;
 /// Number of steps after which the generation of the pile fails: a constant, and an addition per layer of the pile.
@@ -161,11 +162,11 @@ pub(super) fn settled(
 /// The medium that damps the velocities of the grains while the pile settles.
 #[derive(Clone, Copy)]
 enum Medium {
-    /// Medium so thick that the pile does not oscillate.
+    /// Medium so thick that the pile cannot oscillate up and down as a whole.
     Thick {
         damping: f64,
     },
-    /// Medium so thin that grains can fall.
+    /// Medium so thin that grains can fall through it.
     Thin,
     None,
 }
@@ -181,8 +182,8 @@ impl Medium {
     }
 }
 
-/// Measures of the motion of the grains: the mean kinetic energy of a grain in m g d, and speeds of centres or rims
-/// in √(g·d).
+/// Measures of the motion of the grains: their mean kinetic energy in m g d, and speeds of centres or rims in √(g·d),
+/// with the mass m of a grain, gravity g and the mean diameter d.
 struct GrainSpeeds {
     energy: f64,
     /// Speed of the fastest grain, not counting the few grains that may move in a pile at rest.

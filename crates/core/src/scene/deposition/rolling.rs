@@ -110,8 +110,8 @@ impl Deposit {
         best
     }
 
-    /// Calls `visit` for each disc that a disc of this radius may touch while its centre is within the rectangle. It
-    /// is also called for some other discs.
+    /// Calls `visit` for each disc that a disc of radius `radius` (m) may touch while its centre is within the
+    /// rectangle from `min` to `max` (m). It is also called for some other discs.
     fn each_near(&self, [min, max]: [DVec2; 2], radius: f64, mut visit: impl FnMut(usize, &Disc)) {
         let reach = radius + self.largest_radius;
         let middle = 0.5 * (min.x + max.x);
@@ -139,7 +139,7 @@ impl Deposit {
     }
 }
 
-/// A body that supports a disc at rest.
+/// A body on which a disc at rest is supported: another disc, a wall or the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// The disc with this index in the deposit.
@@ -274,7 +274,8 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
         // The disc rolls past a disc that it would only graze.
         if cosine.abs() < 1.0 - GRAZING {
             let angle = libm::atan2(there.x, there.y) - libm::acos(cosine);
-            // The angle at or after the present angle, except for rounding.
+            // Angle from the present position to the position at which the two discs touch. It is not negative,
+            // except for rounding.
             let ahead = (angle - now + ROUNDING).rem_euclid(TAU) - ROUNDING;
             meet(now + ahead, Obstacle::Disc(index));
         }

@@ -17,8 +17,8 @@ const GRAINS_OF_SQUARE: f64 = 2.09;
 /// Distance by which each gate moves, m. With `GATE_SECS` (the time of this motion, s) its speed is 15 m/s.
 const GATE_WAY: f64 = 3.0;
 const GATE_SECS: f64 = 0.2;
-/// Half-width of the rough floor, relative to the longest known run-out of a column. Outside the rough floor there is
-/// a smooth floor.
+/// Half-width of the rough floor, relative to the longest known run-out of a collapsed column. Farther outside the
+/// floor is smooth.
 const REACH: f64 = 1.3;
 
 /// Returns the half-width R₀, in diameters, of a column with this number of grains and the aspect ratio H₀/R₀ (H₀:

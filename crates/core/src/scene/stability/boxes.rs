@@ -12,7 +12,7 @@ use crate::world::Boundary;
 const HIGH: u8 = 6;
 /// Final spacing of the columns, in diameters.
 const NARROWEST: f64 = 0.6;
-/// Speed of each wall, m/s. At this speed the highest disc rises with at most half of √(g d).
+/// Speed of each wall, m/s. At this speed the highest disc rises at most at half of √(g d) (g: gravity, d: diameter).
 const SPEED: f64 = 0.007;
 
 /// Returns the correct positions of the discs, in diameters, when the columns are `spacing` diameters apart.
@@ -66,7 +66,7 @@ pub fn pressing_secs() -> f64 {
 
 /// Number of discs along each side of the box.
 const SIDE: i32 = 5;
-/// Largest component of the initial velocity of each disc, in √(g d).
+/// Largest component of the initial velocity of each disc, in √(g d) (g: gravity, d: diameter).
 const SQUEEZED_SPEED: f64 = 0.3;
 
 /// Returns the scene of a lattice of 5 × 5 discs in a box that is too small: each side of the box is shorter than the

@@ -144,8 +144,8 @@ pub fn arch() -> Scene {
     scene
 }
 
-/// Overlap of neighbouring discs in the regular lattice, in units of the largest displacement. Two neighbours can
-/// move apart by two units, and half of that is added as a margin.
+/// Overlap of neighbouring discs in the regular lattice, in units of the largest displacement of a disc. The
+/// displacements can move two neighbours apart by two units, and half of that is added as a margin.
 const SPARE: f64 = 3.0;
 
 /// Returns the scene of a box full of discs in a triangular lattice. Each disc is displaced at random by up to

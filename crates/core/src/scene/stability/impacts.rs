@@ -20,7 +20,7 @@ pub fn bounce(restitution: f64) -> Scene {
     scene
 }
 
-/// Speed of the first ball, in √(g d).
+/// Speed of the first ball, in √(g d) (g: gravity, d: diameter).
 const BALL_SPEED: f64 = 3.0;
 
 /// Returns the scene of Newton's cradle, without gravity: one ball hits a row of `count` − 1 balls, which touch each
@@ -43,7 +43,8 @@ pub fn balls(count: usize) -> Scene {
 
 /// Mass of the falling disc divided by the mass of the sliding disc.
 const RATIO: f64 = 9.0;
-/// Speed of both discs along the floor, in √(g d). `FALLING` is the speed at which the heavy disc falls, in √(g d).
+/// Speed of both discs along the floor, in √(g d) (g: gravity, d: diameter). `FALLING` is the speed at which the
+/// heavy disc falls, in the same unit.
 const SLIDING: f64 = 6.0;
 const FALLING: f64 = 2.0;
 /// Initial gap between the falling disc and the lower disc, in diameters. It is so large that at every time step the
@@ -62,7 +63,7 @@ const HEIGHT: f64 = 0.05;
 /// whatever happens between the two discs. The two discs stay together, because this needs only a fraction of 0.9 μ
 /// of the blow as friction between them, which is less than μ (the lower disc has the mass M/10).
 ///
-/// The solver `tresca` bounds the friction of a step by the normal impulse of the previous step. At the step of the
+/// The friction model `tresca` bounds friction in a step by the normal impulse of the previous step. At the step of the
 /// blow this impulse of the floor is zero, and at the next step it is the blow. So the speed is right one step late,
 /// and both discs move too far by Δt μ|p_y|/M (time step Δt). A second solve of the same step uses the impulse of the
 /// blow, because here the normal impulse of the floor does not depend on friction.
@@ -82,7 +83,7 @@ pub fn blow() -> Scene {
     scene
 }
 
-/// Speed of the disc at the start, in √(g d).
+/// Speed of the disc at the start, in √(g d) (g: gravity, d: diameter).
 const SLIDING_SPEED: f64 = 3.0;
 
 /// Returns the scene of a disc that slides on the floor and does not rotate. It must keep its height, and stop.

@@ -24,8 +24,8 @@ use crate::world::{Boundary, Grain, Gravity, Parameters};
 pub const DIAMETER: f64 = 0.01;
 /// Gravity g in these scenes, m/s².
 pub const GRAVITY: f64 = 9.8;
-/// Overlap of discs that touch at the start, in diameters. It is larger than the gap that a well solved step may
-/// open, and much smaller than any measured length.
+/// Overlap of discs that are in contact at the start, in diameters. It is larger than the gap that a well solved step
+/// may open, and much smaller than any measured length.
 const TOUCH: f64 = 1e-6;
 /// Returns a scene of grains under gravity, without cohesion and without restitution.
 pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
@@ -36,7 +36,7 @@ pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// Like [`dry`], with the ground at y = 0.
+/// Returns a scene of grains under gravity above the ground at y = 0, without cohesion and without restitution.
 fn on_floor(name: &str, grains: Vec<Grain>) -> Scene {
     Scene { boundaries: vec![floor()], ..dry(name, grains) }
 }
