@@ -11,8 +11,8 @@ use crate::solver::problem::{FixedRow, PairRow, Row, StepProblem};
 
 /// Returns a problem with random contacts between bodies of different masses. The numbers of the two bodies of a
 /// contact differ by less than `reach`; every sixth contact is with a fixed body. `added` is the range of the
-/// restitution terms added to v_n, m/s. If it is positive, the problem has a solution, because all contacts may have a
-/// velocity of 0.
+/// restitution terms added to v_n, m/s. If it is positive, the problem has a solution, because bodies at rest
+/// violate no contact.
 pub(super) fn random_problem<M: Model>(
     seed: u64,
     law: ContactLaw,
