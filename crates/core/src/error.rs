@@ -157,7 +157,8 @@ pub fn in_words(expected: &str) -> String {
 const MOST_DIGITS: usize = 24;
 /// Largest number of characters of a word in a message. Longer words are cut.
 const MOST_OF_WORD: usize = 120;
-/// Largest number of bytes of a field, value or range in a message. The list of all settings is shorter.
+/// Largest number of bytes of a field, value or range in a message. The longest range, the list of all settings, is
+/// shorter.
 const MOST_OF_PART: usize = 3000;
 
 /// Returns a part of a message in readable form, whatever text a file or a command line put into it. It escapes

@@ -1,6 +1,6 @@
-//! Functions on numbers that give the same result with every compiler and in every file. The attribute `#[serde(with
-//! = "number")]` writes infinities and NaN as strings, because JSON does not have such numbers and `null` could not
-//! be read back as a number.
+//! Functions on numbers that give the same result with every compiler and in every file. The attribute
+//! `#[serde(with = "number")]` writes infinities and NaN as strings, because JSON does not have such numbers and `null`
+//! could not be read back as a number.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serializer};

@@ -85,11 +85,11 @@ pub(crate) struct LookAhead {
 /// only near each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum InTouch {
-    /// Pairs that touch when the step begins are in touch.
+    /// A pair is in touch if it touches when the step begins.
     Touching,
-    /// Pairs that have touched are in touch. They remain bonded, and in the contact list, until the bond breaks.
+    /// A pair is in touch if it has touched. It remains bonded, and in the contact list, until the bond breaks.
     Bonded,
-    /// Pairs with at most this gap (m) when the step begins are in touch.
+    /// A pair is in touch if its gap is at most this length (m) when the step begins.
     Within(f64),
 }
 

@@ -102,10 +102,10 @@ fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
 
 /// Returns the scene of the collision with one contact (paper §2.2): a disc falls on a fixed disc.
 ///
-/// Let A be the normal force (N) for which the formal velocity v̄ of the contact would be 0, and C₀ the cohesion
-/// force (N). The contact has three cases. For A > 0 the disc bounces. For −C₀ < A < 0 the contact closes again. For
-/// A < −C₀ it opens. The built-in scene starts in the first case and passes through the other cases as the bounces
-/// decay.
+/// Let A be the normal force (N) for which the formal velocity v̄ = (v⁺ + ρ v⁻)/(1 + ρ) of the contact would be 0
+/// (v⁻, v⁺: normal velocity before and after the step, ρ: restitution), and C₀ the cohesion force (N). The contact
+/// has three cases. For A > 0 the disc bounces. For −C₀ < A < 0 the contact closes again. For A < −C₀ it opens. The
+/// built-in scene starts in the first case and passes through the other cases as the bounces decay.
 pub fn collision() -> Scene {
     let radius = 0.5 * LINE_DIAMETER;
     let gravity = Gravity::Uniform { acceleration: DVec2::new(-2.0, 0.0) };

@@ -5,8 +5,8 @@ use crate::setting::{Group, words};
 use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
-/// Touch tolerance of the preset `robust`, in mean diameters. Contacts that the errors of a step open by less than
-/// this still touch.
+/// Touch tolerance (largest gap at which grains touch) of the preset `robust`, in mean diameters. Contacts that the
+/// errors of a step open by less than this still touch.
 const TOUCH_TOLERANCE: f64 = 1e-3;
 /// Restitution threshold of the preset `robust`: contacts that close slower than this many g·Δt (gravity times time
 /// step) do not bounce. With this threshold nearly every step has a solution.

@@ -42,7 +42,7 @@ enum Kind {
 }
 
 impl Default for Sizes {
-    /// The distribution of the shipped pile.
+    /// The distribution of the diameters in the pile that is shipped with Slump.
     fn default() -> Self {
         Self { kind: Kind::Uniform(0.2), text: "uniform:0.2".into() }
     }

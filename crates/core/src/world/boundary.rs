@@ -37,7 +37,7 @@ pub enum Boundary {
         normal: DVec2,
         /// Speed, m/s; positive towards the grains.
         speed: f64,
-        /// Remaining distance before it stops, m.
+        /// Remaining distance before the piston stops, m.
         travel: f64,
     },
     /// A thin wall from one point to another. Grains can touch it from both sides.

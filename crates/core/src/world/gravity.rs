@@ -103,9 +103,9 @@ pub enum TurnCourse {
 pub struct TurningGravity {
     /// The acceleration at an angle of 0, m/s², as given in the scene.
     pub listed: DVec2,
-    /// Rotation over time, starting from `listed`.
+    /// Rotation over time, starting from the direction of `listed`.
     pub turn: GravityTurn,
-    /// Additional angle of gravity, rad. It stays constant until a setting changes it.
+    /// Additional angle by which gravity is turned, rad. It stays constant until a setting changes it.
     pub tilt: f64,
 }
 

@@ -14,11 +14,12 @@ words! {
     }
 }
 
-/// Default of the debonding distance δ_c, in mean diameters.
+/// Default of the debonding distance δ_c (opening at which a bond of the law `range` breaks), in mean diameters.
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
-/// Default of the touch tolerance, in mean diameters. With a smaller tolerance, discs that a scene file places in
-/// contact would not touch because of rounding, and a pyramid of logs in equilibrium would not stand.
+/// Default of the touch tolerance (largest gap at which grains touch), in mean diameters. With a smaller tolerance,
+/// discs that a scene file places in contact would not touch because of rounding, and a pyramid of logs in
+/// equilibrium would not stand.
 const TOUCH_TOLERANCE: f64 = 1e-5;
 
 /// Largest allowed number of substeps per step. With more, a single step of a pile would take many seconds.
@@ -137,8 +138,8 @@ settings! {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
-        /// Debonding distance δ_c of the law `range`, in mean diameters. The upper limit is so small that a third
-        /// grain does not fit between two bonded grains.
+        /// Debonding distance δ_c of the law `range`: the opening at which a bond breaks, in mean diameters. The
+        /// upper limit is so small that a third grain does not fit between two bonded grains.
         #[serde(default = "default_debonding_distance")]
         debonding_distance: f64 = DEBONDING_DISTANCE, "debonding-distance" ("D"),
             "Distance by which a bond of the stepper range opens before it breaks, in mean diameters", {
@@ -155,8 +156,8 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// Touch tolerance, in mean diameters. The upper limit is so small that a third grain does not fit between
-        /// two bonded grains.
+        /// Touch tolerance: the largest gap at which grains touch, in mean diameters. The upper limit is so small
+        /// that a third grain does not fit between two bonded grains.
         #[serde(default = "default_touch_tolerance")]
         touch_tolerance: f64 = TOUCH_TOLERANCE, "touch-tolerance" ("D"),
             "Largest gap at which grains touch, and cohere if they have cohesion, in mean diameters; they push each \

@@ -12,9 +12,9 @@
 //! upper border re-enters as its image from the cell below: its x is reduced by s and its v_x by U. The position of
 //! the borders does not matter: moving them only adds a constant velocity to the flow.
 //!
-//! **Offsets** between two points are reduced to the shortest vector in two steps. The first step removes the shift
-//! that belongs to the whole heights in the offset. Then each axis wraps separately. The result is the nearest image
-//! for any pair that is less than half a height apart, and so for any touching pair.
+//! **Offsets** between two points are reduced to the shortest vector in two steps. The first step counts the whole
+//! cell heights in the offset and subtracts the shift s of that many cells. Then each axis wraps separately. The
+//! result is the nearest image for any pair that is less than half a height apart, and so for any touching pair.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -201,7 +201,8 @@ impl Periodic {
         }
     }
 
-    /// Returns an offset (m) without the shift along x that belongs to the whole heights in it.
+    /// Returns an offset (m) between two points minus the shift of sheared cells in it: the shift along x from one
+    /// cell to the next, times the number of whole cell heights in the offset.
     #[inline]
     pub(super) fn upright(self, offset: DVec2) -> DVec2 {
         DVec2::new(offset.x - self.lean(periods_in(self.y, offset.y)), offset.y)

@@ -105,9 +105,9 @@ const INCLINE_WIDTH: f64 = 40.0;
 const INCLINE_HEIGHT: f64 = 30.0;
 /// Time for the grains to come to rest before the box is tilted, s.
 pub const LEVEL_SECS: f64 = 0.4;
-/// Angular velocity of the tilt, rad/s.
+/// Angular velocity at which the box is tilted, rad/s.
 pub const TILT_RATE: f64 = 0.12;
-/// Largest angle of the tilt, rad.
+/// Largest angle by which the box is tilted, rad.
 const STEEPEST: f64 = 0.72;
 
 /// Returns the scene of an incline: a layer of grains in a flat box with a rough bottom that is tilted slowly. The
