@@ -141,7 +141,7 @@ pub(crate) struct RelativeMotion {
 }
 
 impl RelativeMotion {
-    /// Relative displacement after `secs` seconds, x(`secs`) − x, m.
+    /// Returns the relative displacement after `secs` seconds from the present relative position, m.
     fn way(&self, secs: f64) -> DVec2 {
         self.offset + secs * (self.velocity + 0.5 * secs * self.acceleration)
     }

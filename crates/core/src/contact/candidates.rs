@@ -71,7 +71,7 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Prepares the search in a world. The list of pairs is still empty.
+    /// Prepares the search for candidate pairs in a world. The list of pairs is still empty.
     ///
     /// # Errors
     /// If a boundary does not have a valid shape.

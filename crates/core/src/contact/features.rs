@@ -238,8 +238,9 @@ impl Feature {
     }
 }
 
-/// Returns the outward normal of that side of a convex polygon whose line is nearest to a point inside, and the
-/// signed distance of the point from this line, m. The distance is negative inside the polygon and positive outside.
+/// Finds that side of a convex polygon from whose line a point has the largest signed distance (negative inside the
+/// polygon, positive outside). For a point inside, this is the nearest side. Returns the outward normal of the side,
+/// and the signed distance, m.
 fn way_out(sides: &[Segment], place: DVec2) -> (DVec2, f64) {
     let lines = sides.iter().map(|side| (-left_of(side), (place - side.a).dot(-left_of(side))));
     lines.fold(

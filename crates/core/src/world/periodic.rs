@@ -71,7 +71,7 @@ impl Periodic {
     }
 
     /// Returns the image of a point that is in the cell, m. The left and the lower border belong to the cell. A point
-    /// that is already in the cell keeps all its bits.
+    /// that is already in the cell is returned unchanged, bit for bit.
     pub fn wrap(self, place: DVec2) -> DVec2 {
         let x = match self.is_sheared() {
             true => place.x - self.lean(self.cells_above(place.y)),
@@ -80,8 +80,8 @@ impl Periodic {
         DVec2::new(wrapped(self.x, x), wrapped(self.y, place.y))
     }
 
-    /// Returns the shortest vector that equals `offset` except for whole periods, m. An offset below half a period
-    /// keeps all its bits.
+    /// Returns the shortest vector that equals `offset` except for whole periods, m. An offset below half a period is
+    /// returned unchanged, bit for bit.
     #[inline]
     pub fn shortest(self, offset: DVec2) -> DVec2 {
         let offset = if self.is_sheared() { self.upright(offset) } else { offset };
@@ -225,7 +225,8 @@ impl Periodic {
         self.lean(periods_in(self.y, height))
     }
 
-    /// Like `lean_of`, but reduced by whole widths so that a point at `x` (m) is in the cell after the shift.
+    /// Returns the shift along x of the image of the cell that is `height` (m) higher, m. It is reduced by whole cell
+    /// widths so that a point at `x` (m) is in the cell after the shift.
     pub(crate) fn lean_into_cell(self, x: f64, height: f64) -> f64 {
         let lean = self.lean_of(height);
         if lean == 0.0 { 0.0 } else { wrapped(self.x, x + lean) - x }

@@ -159,7 +159,7 @@ pub struct Rest {
     pub supports: (Support, Option<Support>),
 }
 
-/// Angle by which a contact may be behind a rolling disc because of rounding, rad.
+/// Angle, rad, by which a contact can seem to be behind a rolling disc because of rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Returns the position of rest of a disc that is dropped at the coordinate `x` (m) from above all other discs. The
