@@ -13,10 +13,10 @@
 //! ```
 //!
 //! Programs start from a [`scene`] and step its [`sim::Simulation`]. Your own stepper, contact law or method implements
-//! [`sim::Advance`]. [`next_problem`](sim::Simulation::next_problem) shows a single problem to a
-//! [`sim::ProblemVisitor`], and [`solver::solve`] solves it. The programs in `examples/` show how.
+//! [`sim::Advance`]. [`next_problem`](sim::Simulation::next_problem) passes the contact problem of the next step to a
+//! [`sim::ProblemVisitor`], and [`solver::solve`] solves such a problem. The programs in `examples/` show how.
 //!
-//! Each module uses those before it:
+//! In this list, `a` ← `b` means that the module `b` uses the module `a`:
 //!
 //! * `slump-core`: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`]
 //! * `slump-data`: [`granular`] ← [`data`] ← [`interchange`], [`config`]

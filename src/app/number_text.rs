@@ -26,7 +26,7 @@ pub(super) fn clock_text(secs: f64) -> String {
     if millis < 1e7 { format!("{millis:.1} ms") } else { format!("{millis:.3e} ms") }
 }
 
-/// Returns a field for a time in seconds that shows and accepts milliseconds.
+/// A field for a time in seconds, which shows and reads milliseconds.
 pub(super) fn time_field(secs: &mut f64) -> DragValue<'_> {
     DragValue::new(secs)
         .custom_formatter(|secs, _| written((1e9 * secs).round() / 1e6))

@@ -45,7 +45,7 @@ pub(crate) fn good(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x5c, 0xc9, 0x8a) } else { Color32::from_rgb(0x0a, 0x7d, 0x46) }
 }
 
-/// Returns the colour of a compared world. Colour-blind people can distinguish these colours (Okabe & Ito).
+/// Colours of the compared worlds. Colour-blind people can distinguish them (Okabe & Ito).
 pub(crate) fn world_colour(index: usize, dark: bool) -> Color32 {
     const COLOURS: [u32; 6] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];
     const ON_DARK: [u32; 6] = [0x56b4e9, 0xe8772e, 0x2fc49a, 0xe09cc4, 0xf0bf4c, 0x9a8cff];

@@ -56,7 +56,7 @@ struct FigureSeries {
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
 impl TimeStepFigure {
-    /// Returns the plot for the runs `released`; `None` if no run has a confidence interval yet.
+    /// Makes the figure of the released piles. `None` if no pile has an interval yet.
     pub(super) fn new<'a>(
         released: impl Iterator<Item = &'a Released>,
         is_dark: bool,
@@ -147,7 +147,7 @@ impl TimeStepFigure {
     }
 }
 
-/// Returns the hover text of a point: its name, which contains all values.
+/// Text at a point: the point's name, which contains all values.
 fn hover_text(position: &HoverPosition<'_>) -> Option<String> {
     match position {
         HoverPosition::NearDataPoint { plot_name, .. } => Some((*plot_name).to_owned()),

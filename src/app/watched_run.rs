@@ -127,7 +127,7 @@ impl WatchedRun {
         self.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs)
     }
 
-    /// Returns the settings in which a world differs from the other worlds, as a title.
+    /// The settings in which a world differs from the others.
     pub(crate) fn title(&self, world: usize) -> String {
         title_among(&self.wanted, world)
     }

@@ -31,8 +31,8 @@ pub(super) struct Manifest {
 /// Shortest time between two writes during the run. If the process is killed, its manifest may lack the pictures of
 /// this period.
 const WAIT: Duration = Duration::from_millis(500);
-/// The time between two writes is at least this many times the duration of a write, so that a long manifest is written
-/// less often.
+/// Least ratio of the time between two writes to the duration of a write. Because of it, a long manifest, which takes
+/// longer to write, is written less often.
 const PART: u32 = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

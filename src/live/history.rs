@@ -28,8 +28,8 @@ const PAST_KEYFRAME_BYTES: usize = 1 << 20;
 /// observables of one step) takes about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
-/// Time after which a tick (one step of all worlds) is interrupted to look for commands. A world whose time step is far
-/// shorter than the longest one takes thousands of steps per tick.
+/// Time after which a tick is interrupted to handle commands. A tick is one step of the world with the longest time
+/// step; a world with a far shorter time step takes thousands of steps in a tick.
 const SLICE: Duration = Duration::from_millis(50);
 /// Steps of each world between two reports of progress.
 const STEPS_AT_ONCE: u64 = 8;
@@ -46,7 +46,7 @@ pub(super) struct LiveRun {
     /// Number by which the window selects an earlier run.
     #[serde(skip)]
     number: u64,
-    /// Simulated time that the worlds approach during an unfinished tick, s.
+    /// Simulated time that all worlds must reach to finish a tick ([`Self::tick`]), s.
     #[serde(skip)]
     goal_secs: Option<f64>,
 }
@@ -67,12 +67,12 @@ impl LiveRun {
         self.worlds.iter().map(|world| *world.simulation.settings()).collect()
     }
 
-    /// True if the next tick branches off from the record, because the settings differ from the recorded ones.
+    /// True if the next step branches off from the record, because the settings differ from the recorded ones.
     pub(super) fn branches(&self) -> bool {
         self.worlds.iter().any(WorldHistory::branches)
     }
 
-    /// True if the next tick repeats recorded steps.
+    /// True if the next step repeats a recorded step.
     pub(super) fn replays(&self) -> bool {
         let replays = |world: &WorldHistory| world.record.replays(&world.simulation);
         !self.branches() && self.worlds.iter().any(replays)
@@ -142,7 +142,7 @@ impl LiveRun {
         (self.steps() - steps_before, all_well)
     }
 
-    /// True while a tick is unfinished.
+    /// True while some worlds have not yet finished a tick ([`Self::tick`]).
     pub(super) fn is_on_its_way(&self) -> bool {
         self.goal_secs.is_some()
     }
@@ -310,7 +310,7 @@ impl RunHistory {
         true
     }
 
-    /// Keeps a copy of the present run, if its next tick branches off from the record.
+    /// Keeps a copy of the present run, if its next step branches off from the record.
     pub(super) fn keep_before_tick(&mut self) {
         if self.present.branches() {
             let mut before = self.present.clone();
