@@ -24,8 +24,8 @@ pub(super) fn bare_plot<'a>(
 }
 
 /// Returns a plot with numbered axes; the x axis has the unit `x_unit`. `log` states which axes (x, y) are logarithmic.
-/// Numbers along a logarithmic axis with a unit are written in full. Times along a linear axis are in seconds, and
-/// their labels are in milliseconds.
+/// Along a logarithmic axis with a unit, the labels are decimal numbers; without a unit they are powers of ten. Times
+/// along a linear axis are in seconds, and their labels are in milliseconds.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,

@@ -88,7 +88,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Opens a graphics device, as for pictures of scenes.
+    /// Opens a graphics device.
     ///
     /// # Errors
     /// If there is no graphics device. The message names the packages that provide one.

@@ -180,7 +180,7 @@ impl Choices {
 }
 
 impl Preferences {
-    /// Begins the lesson with the index `at`, and applies its choices.
+    /// Begins the lesson with the index `at`, and sets the preferences that the lesson needs.
     pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
         let replaced = choices.swap(self);
         let before = self.lesson.before.take().unwrap_or(replaced);

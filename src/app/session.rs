@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::live::LiveStart;
 use crate::output::{Seal, write_file};
 
-/// First bytes of a session file.
+/// First bytes of a session file, by which the program recognises such a file.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
     format: 8,

@@ -16,7 +16,7 @@ use crate::sim::Settings;
 
 /// Title of the plot.
 const TITLE: &str = "slump against Δt";
-/// Hover text: meaning of a point.
+/// Hover text of the title, which explains a point of the plot.
 const HINT: &str = "One point per released pile: the mean slump of its other piles at the end of the scene, with \
                     its 95 % interval.";
 /// Smallest range of the time step axis, ms.

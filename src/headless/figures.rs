@@ -26,11 +26,11 @@ use crate::study::{
 };
 use crate::threads::make_threads;
 
-/// Width of a panel of Fig. 4, pixels.
+/// Width of a panel of Fig. 4 of the paper, pixels.
 const PILE_PANEL_WIDTH: u32 = 640;
-/// Width of Fig. 3, pixels.
+/// Width of Fig. 3 of the paper, pixels.
 const FIG3_WIDTH: u32 = 1280;
-/// Width of a panel of Fig. 7, pixels.
+/// Width of a panel of Fig. 7 of the paper, pixels.
 const CRADLE_PANEL_WIDTH: u32 = 720;
 
 struct FigureRun {

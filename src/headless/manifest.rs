@@ -103,7 +103,7 @@ pub(super) struct RunEntry {
     pub fracture_work: Option<FractureWork>,
 }
 
-/// A moment of a run.
+/// A moment of a run: number of the step, and simulated time.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Instant {

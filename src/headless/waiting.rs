@@ -90,7 +90,7 @@ impl WaitingStates {
         Self { path: path.to_owned(), file, places: vec![0], range: None, force_reference: 0.0 }
     }
 
-    /// Number of states.
+    /// Number of states in the file.
     pub(crate) fn len(&self) -> usize {
         self.places.len() - 1
     }

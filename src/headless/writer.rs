@@ -25,7 +25,7 @@ use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
 const RUN: &str = "run";
-/// Frame rate of a GIF, Hz, which viewers can show.
+/// Frame rate of a GIF, Hz, which common viewers can show.
 const GIF_RATE_HZ: f64 = 25.0;
 
 pub(super) struct RunWriter<'a> {

@@ -31,7 +31,7 @@ struct Outbox {
     sent: Instant,
     /// True if the last published frame does not show the newest state.
     is_behind: bool,
-    /// True if the next step must be shown at once.
+    /// True if a frame must be published immediately after the next step.
     is_urgent: bool,
 }
 

@@ -19,7 +19,7 @@ pub struct Live {
     sent: u64,
 }
 
-/// The place of the computation.
+/// The place in which a run is computed.
 enum Place {
     /// A thread of this process.
     Thread { commands: Sender<(u64, Command)>, frames: Output<LiveFrame> },

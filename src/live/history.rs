@@ -24,14 +24,14 @@ const PART_OF_PAST: usize = 8;
 /// file. States between keyframes can be computed again.
 const KEYFRAME_BYTES: usize = 8 << 20;
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Largest number of rows of a curve in such a history, for the present run and for earlier runs. A row (the
-/// observables of one step) takes about 500 bytes in a file.
+/// Largest number of rows of a curve in a history that is sent to the window or to a file, for the present run and for
+/// earlier runs. A row (the observables of one step) takes about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
 /// Time after which a tick is interrupted to handle commands. A tick is one step of the world with the longest time
 /// step; a world with a far shorter time step takes thousands of steps in a tick.
 const SLICE: Duration = Duration::from_millis(50);
-/// Steps of each world between two reports of progress.
+/// Number of steps that each world takes between two reports of progress.
 const STEPS_AT_ONCE: u64 = 8;
 
 /// Worlds (simulations) side by side at the same simulated time. The world with the largest time step leads. Each other

@@ -36,7 +36,7 @@ impl Controls {
 pub struct ControlsChange {
     /// Number of the last step before the change.
     pub after_step: u64,
-    /// Simulated time of that step, s.
+    /// Simulated time at the end of that last step, s.
     pub time_secs: f64,
     /// The new controls, which apply until the next change.
     pub controls: Controls,

@@ -14,7 +14,7 @@ use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Work, outcome_of_ended};
 use crate::granular::{Histogram, histograms};
 
-/// Least time between two counts.
+/// Least time between two counts of the histograms.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Histograms of one world at the displayed moment, or at a slightly earlier moment.
