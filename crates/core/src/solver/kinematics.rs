@@ -70,9 +70,9 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
         index: usize,
         time_step_secs: f64,
     ) -> Self::Body<f64>;
-    /// Packs a unit normal from its x and y components.
+    /// Returns a unit normal in the form that a sweep stores, from its x and y components.
     fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T>;
-    /// Packs the unit normal of a contact in a world, with the slide velocity of the image of body j.
+    /// Returns the unit normal of a contact in a world, with the slide velocity of the periodic image of body j.
     #[inline(always)]
     fn normal_of(world: &World, contact: &Contact) -> Self::Normal<f64> {
         let normal = Self::normal(contact.normal.to_array());
@@ -82,27 +82,28 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
             false => normal,
         }
     }
-    /// Adds the slide velocity of the image of body j, m/s along x, to a packed normal, if images slide in this model.
+    /// Adds the slide velocity of the periodic image of body j, m/s along x, to a stored normal, if images slide in
+    /// this model.
     #[inline(always)]
     fn sliding(normal: Self::Normal<f64>, _slide: f64) -> Self::Normal<f64> {
         normal
     }
-    /// Returns the slide velocity that is stored with a packed normal, m/s along x.
+    /// Returns the slide velocity of the periodic image of body j, which is stored with the normal, m/s along x.
     #[inline(always)]
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// Returns the slide velocity's contributions to v_n and v_t of a contact, m/s, which must be subtracted.
+    /// Returns the contributions of the slide velocity to v_n and v_t of a contact, m/s, which must be subtracted.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
         let slide = Self::slide(normal);
         [x * slide, -y * slide]
     }
-    /// Returns the x and y components of a packed normal; 0 along axes that the model does not have.
+    /// Returns the x and y components of a stored unit normal; 0 along axes that the model does not have.
     fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2];
-    /// Converts (v_n, v_t) relative to body j to (v_n, v_t) relative to the image of j whose slide velocity is stored
-    /// with the normal.
+    /// Converts the velocity (v_n, v_t) relative to body j to (v_n, v_t) relative to the periodic image of body j whose
+    /// slide velocity is stored with the normal.
     #[inline(always)]
     fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
         velocity
@@ -115,7 +116,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     ) -> [T; 2];
     /// Returns the velocity (v_n, v_t) of body i relative to a body at rest at their contact, m/s.
     fn velocity<T: Lanes>(normal: Self::Normal<T>, i: &Self::Body<T>) -> [T; 2];
-    /// Applies the reduced impulses λ_n and λ_t of a contact (m/s) to bodies i and j. `share` is g_i = m_j/(m_i + m_j).
+    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to bodies i and j. `share`
+    /// is the mass ratio g_i = m_j/(m_i + m_j).
     fn push_pair<T: Lanes>(
         i: &mut Self::Body<T>,
         j: &mut Self::Body<T>,
@@ -123,7 +125,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
         reduced_impulse: [T; 2],
         share: T,
     );
-    /// Applies the reduced impulses λ_n and λ_t of a contact (m/s) to body i, which touches a fixed body.
+    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to body i, which touches a
+    /// fixed body.
     fn push_single<T: Lanes>(
         i: &mut Self::Body<T>,
         normal: Self::Normal<T>,
@@ -286,12 +289,12 @@ pub struct RollingPlane;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShearedPlane;
 
-/// The unit normal of a contact, with the slide velocity of the image of body j.
+/// The unit normal of a contact, with the slide velocity of the periodic image of body j.
 #[derive(Clone, Copy, Debug)]
 pub struct SlidingNormal<T> {
     /// Unit normal n, from body j to body i.
     pub normal: [T; 2],
-    /// Slide velocity w of the image of body j, m/s along x; 0 if the pair meets inside the periodic cell.
+    /// Slide velocity w of the periodic image of body j, m/s along x; 0 if the pair meets inside the periodic cell.
     pub slide: T,
 }
 

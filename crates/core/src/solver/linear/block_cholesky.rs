@@ -37,8 +37,8 @@ pub(crate) struct SymmetricBlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. After the factorisation the block at position k is L_k, with the inverses
     /// of the diagonal entries of L_k on the diagonal.
     diagonal: Vec<Padded<D>>,
-    /// Blocks in row a and column b for each pair a < b of neighbouring positions, numbered as in
-    /// [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair a < b of neighbours in the elimination order.
+    /// They are numbered as in [`Elimination::later`].
     upper: Vec<Padded<D>>,
     /// Work memory: the blocks of a supernode's rows outside the supernode, column by column.
     panel: Vec<Padded<D>>,
@@ -59,8 +59,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         add(&mut self.diagonal[place as usize], block);
     }
 
-    /// Adds `block` to the block of two neighbouring positions of the elimination order. `number` is the index of the
-    /// later position in [`Elimination::later`]. The rows of the block belong to the earlier position.
+    /// Adds `block` to the block of two neighbours in the elimination order. `number` is the index of the later
+    /// neighbour in [`Elimination::later`]. The rows of the block belong to the earlier neighbour.
     #[inline(always)]
     pub(crate) fn add_to_upper(&mut self, number: u32, block: &Block<D>) {
         add(&mut self.upper[number as usize], block);

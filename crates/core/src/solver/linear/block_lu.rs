@@ -30,11 +30,11 @@ pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
 pub(crate) struct BlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
     diagonal: Vec<Block<D>>,
-    /// Blocks in row b and column a for each pair a < b of neighbouring positions, numbered as in
-    /// [`Elimination::later`].
+    /// Blocks below the diagonal, in row b and column a, one per pair a < b of neighbours in the elimination order.
+    /// They are numbered as in [`Elimination::later`].
     lower: Vec<Block<D>>,
-    /// Blocks in row a and column b for each pair a < b of neighbouring positions, numbered as in
-    /// [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair a < b of neighbours in the elimination order.
+    /// They are numbered as in [`Elimination::later`].
     upper: Vec<Block<D>>,
 }
 
@@ -65,8 +65,8 @@ impl<const D: usize> BlockMatrix<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// Returns the blocks (i, j) and (j, i) of two neighbouring positions of the elimination order. `number` is the
-    /// index of the later position in [`Elimination::later`].
+    /// Returns the blocks (i, j) and (j, i) of two neighbours in the elimination order. `number` is the index of the
+    /// later neighbour in [`Elimination::later`].
     #[inline(always)]
     pub(crate) fn off_diagonal_mut(
         &mut self,

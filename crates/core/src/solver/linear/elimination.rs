@@ -26,8 +26,8 @@ pub(crate) struct Elimination {
     pub body_at: Vec<u32>,
     /// The position of each body in the elimination order.
     pub place_of: Vec<u32>,
-    /// Ends of the lists of later neighbours: position k has the later neighbours `later[starts[k] .. starts[k + 1]]`,
-    /// in rising order. The index in `later` is the number of the off-diagonal block.
+    /// Boundaries of the lists of later neighbours: position k has the later neighbours `later[starts[k] ..
+    /// starts[k + 1]]`, in rising order. The index in `later` is the number of the off-diagonal block.
     pub starts: Vec<u32>,
     /// Later neighbours of all positions, given by their own positions in the elimination order.
     pub later: Vec<u32>,
@@ -64,7 +64,7 @@ impl Elimination {
         self.structure(bodies);
     }
 
-    /// Returns the number of the block of the positions a < b in the elimination order, which must be neighbours.
+    /// Returns the number of the block of positions a < b in the elimination order, whose bodies must be neighbours.
     pub(crate) fn block(&self, a: u32, b: u32) -> usize {
         let row = self.row(a as usize);
         row.start + self.later[row].partition_point(|&place| place < b)
@@ -350,7 +350,7 @@ mod tests {
                 }
             }
         }
-        // A nested dissection of a 9 × 9 grid has about 31 n log2 n / 8 blocks (n = 81 bodies), a bad order about n²
+        // Minimum degree gives about 400 blocks on a 9 × 9 grid (n = 81 bodies); a bad order gives of the order of n²
         // blocks.
         assert!(elimination.later.len() < 500, "{} blocks", elimination.later.len());
     }

@@ -27,7 +27,8 @@ use crate::solver::settings::SolverSettings;
 const FIRST_COMPLIANCE: f64 = 0.03;
 /// Number of iterations between two checks of ε. A factorisation costs as much as about ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// Minimum ratio of the residuals of velocities and impulses at which ε is changed.
+/// Minimum ratio of the larger to the smaller of the two residuals, of velocities and of impulses, at which ε is
+/// changed.
 const OUT_OF_BALANCE: f64 = 4.0;
 /// Maximum factor by which ε changes at a time.
 const LARGEST_CHANGE: f64 = 10.0;
@@ -132,7 +133,7 @@ fn run<M: Model, const D: usize>(
 }
 
 impl<const D: usize> Directions<D> {
-    /// Factorises the matrix for a compliance ε.
+    /// Factorises the matrix of the linear equations for the body velocities V, with the compliance ε = `compliance`.
     fn factorise<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, matrix, .. } = self;
         matrix.start::<M>(elimination, &problem.bodies.masses);

@@ -106,7 +106,7 @@ fn curvature<S: ContactSystem>(
     if squared > 0.0 { energy / squared } else { 0.0 }
 }
 
-/// Computes next + momentum · (next − now).
+/// Writes next + momentum · (next − now) to `result`.
 fn extrapolate(next: &ScaledVector, now: &ScaledVector, momentum: f64, result: &mut ScaledVector) {
     result.clear();
     let ahead = |next: f64, now: f64| next + momentum * (next - now);

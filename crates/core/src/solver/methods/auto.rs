@@ -15,21 +15,21 @@ use crate::solver::method::Method;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// The product of a problem's number of contacts and the *patience* of Newton's method: the number of factorisations
-/// that have not halved the residual, after which the method stops. The patience is limited by [`LEAST_PATIENCE`] and
-/// [`MOST_PATIENCE`].
+/// Patience of Newton's method times the number of contacts of a problem. The *patience* is the number of
+/// factorisations that have not halved the residual, after which the method stops. It is limited by [`LEAST_PATIENCE`]
+/// and [`MOST_PATIENCE`].
 ///
 /// Measured at Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and 20 factorisations leaves
 /// an error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in relative times of 1, 2 and 3. At 138 grains (260 contacts) and Bond
 /// 100, a patience of 20 does not solve steps that a patience of 99 solves, and the pile slumps because of them.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
-/// Minimum patience of Newton's method, in factorisations, without cohesion and with cohesion. A bond that an unsolved
-/// step breaks stays broken: a pile of 10,000 grains at Bond 100 and 5e-3 s falls with a patience of 5, which does not
-/// solve the first step. With a patience of 10 the first step is solved in 22 factorisations, and the pile does not
-/// fall.
+/// Minimum patience of Newton's method, without cohesion and with cohesion: a number of factorisations that have not
+/// halved the residual. A bond that an unsolved step breaks stays broken: a pile of 10,000 grains at Bond 100 and
+/// 5e-3 s falls with a patience of 5, which does not solve the first step. With a patience of 10 the first step is
+/// solved in 22 factorisations, and the pile does not fall.
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
-/// Maximum patience of Newton's method, in factorisations.
+/// Maximum patience of Newton's method: a number of factorisations that have not halved the residual.
 const MOST_PATIENCE: usize = 100;
 
 /// Number of contacts from which `auto` solves a flowing pile by conjugate gradients. With fewer contacts Newton's

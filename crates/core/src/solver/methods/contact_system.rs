@@ -29,7 +29,7 @@ pub type ScaledVector = Vec<[f64; 2]>;
 /// Work memory of a method. The memory is reused for the next solve, its contents are not.
 #[derive(Debug, Default)]
 pub(crate) struct WorkVectors {
-    /// Scaled vectors: the largest number that a method needs.
+    /// Scaled vectors for intermediate results, as many as any method needs.
     pub pairs: [ScaledVector; 8],
     /// One weight per contact, see [`ContactSystem::splitting`].
     pub weights: Vec<f64>,
@@ -56,13 +56,13 @@ pub trait ContactSystem {
         self.len() == 0
     }
 
-    /// Copies the present scaled impulses s. Clears `impulses` first.
+    /// Copies the present scaled impulses s of all contacts to `impulses`, which is cleared first.
     fn read(&self, impulses: &mut ScaledVector);
 
     /// Sets the scaled impulses, which may have any sign and size, and computes the velocities that follow from them.
     fn write(&mut self, impulses: &[[f64; 2]]);
 
-    /// Copies the scaled velocities w. Clears `velocities` first.
+    /// Copies the present scaled velocities w of all contacts to `velocities`, which is cleared first.
     fn velocities(&self, velocities: &mut ScaledVector);
 
     /// Returns m_n/m_t of a contact, the tangential entry on the diagonal of A; the normal entry is 1.
@@ -115,7 +115,7 @@ impl<'a, M: Model> BodySystem<'a, M> {
         self.problem.root_masses[contact]
     }
 
-    /// Iterates over the rows, each with √m_n, kg^½.
+    /// Iterates over the rows (the data of the contacts), each with √m_n, kg^½.
     fn rows(&self) -> impl Iterator<Item = (&Row<M>, &f64)> {
         self.problem.rows.iter().zip(&self.problem.root_masses)
     }

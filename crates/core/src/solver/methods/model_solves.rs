@@ -13,8 +13,9 @@ use crate::solver::settings::{FrictionModel, SolverSettings};
 /// second solve that they save.
 const SWEEPS_FOR_BOUNDS: [u32; 2] = [4, 46];
 
-/// Solves a problem with `solve_once` as often as the settings ask for, and recomputes the lagged numbers before each
-/// further solve. The step is solved if the last solve has converged; earlier solves only provide the lagged numbers.
+/// Solves a problem with `solve_once` as often as the settings ask for. Before each further solve it recomputes the
+/// friction bounds or opening speeds that stay fixed during a solve. The step is solved if the last solve has
+/// converged; earlier solves only provide these numbers.
 pub(super) fn solve_models<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,

@@ -48,16 +48,17 @@ const FIRST_COMPLIANCE: f64 = 1e-7;
 const SMALLEST_COMPLIANCE: f64 = 1e-7;
 /// Maximum compliance ε. With a larger ε a Newton step is no better than sweeps, which then replace it for a while.
 const LARGEST_COMPLIANCE: f64 = 0.1;
-/// Factor of the compliance ε after an accepted step.
+/// Factor by which the compliance ε is multiplied after an accepted step.
 const AFTER_SUCCESS: f64 = 0.2;
-/// Factor of the compliance ε after a rejected step.
+/// Factor by which the compliance ε is multiplied after a rejected step.
 const AFTER_FAILURE: f64 = 10.0;
 /// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
 const SWEEPS_FIRST: u32 = 4;
 /// Number of sweeps after each factorisation: they correct wrong contact states at a fraction of the cost of a
 /// factorisation.
 const SWEEPS_AFTER: u32 = 4;
-/// Number of sweeps if Newton's method stalls, doubled each time up to [`MOST_SWEEPS_BETWEEN`].
+/// Number of sweeps that replace a Newton step if Newton's method stalls, doubled each time up to
+/// [`MOST_SWEEPS_BETWEEN`].
 const SWEEPS_BETWEEN: u32 = 20;
 const MOST_SWEEPS_BETWEEN: u32 = 200;
 /// Number of factorisations before contacts are also solved separately (non-linear elimination). If elimination begins

@@ -25,10 +25,12 @@ const SWEEPS: u32 = 100;
 /// one call to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NonlinearElimination {
-    /// Squared residual of each row, (N·s)². `by_square` has the numbers of the rows from the largest to the smallest.
+    /// Squared residual of each contact, (N·s)². `by_square` has the numbers of the contacts from the largest to the
+    /// smallest.
     squares: Vec<f64>,
     by_square: Vec<usize>,
-    /// True for each body that has a selected contact. `around` is true also for each body that touches such a body.
+    /// True for each body with a contact that is selected for a separate solution. `around` is true also for each body
+    /// that touches such a body.
     at: Vec<bool>,
     around: Vec<bool>,
     fixed: Vec<usize>,

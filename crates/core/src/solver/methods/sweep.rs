@@ -39,8 +39,7 @@ impl ImpulseChange {
 }
 
 impl<T: Lanes> ImpulseChange<T> {
-    /// Adds a change of the reduced impulses (λ_n, λ_t), m/s, of a contact with effective mass `mass`, kg, if `MEASURE`
-    /// is set.
+    /// Adds a change of the impulses (λ_n, λ_t), divided by the effective mass `mass` (kg), m/s, if `MEASURE` is set.
     #[inline(always)]
     pub(crate) fn add<M: Model, const MEASURE: bool>(
         &mut self,
@@ -69,7 +68,8 @@ impl<M: Model, T: Lanes> Local<M, T> {
         [normal, tangential - surface_speed]
     }
 
-    /// Solves contacts of grains with fixed bodies: updates the impulses (σ, λ_t) and the velocities of the grains.
+    /// Solves contacts of grains with fixed bodies: updates the impulses (σ, λ_t), m/s, and the velocities of the
+    /// grains.
     #[inline(always)]
     pub(crate) fn solve_fixed<const MEASURE: bool>(
         &self,

@@ -23,11 +23,12 @@ use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// The friction model of a step, and its lagged numbers: the numbers that stay fixed while the step is solved.
+/// The friction model of a step, and the *lagged numbers*: one number per contact that stays fixed during a solve.
 #[derive(Clone, Debug)]
 pub(crate) struct LaggedFriction {
     pub model: FrictionModel,
-    /// The lagged number of each row, m/s: a friction bound or an opening speed. Empty under Coulomb's law.
+    /// For each row (contact), the number that stays fixed during a solve, m/s: a friction bound or an opening speed.
+    /// Empty under Coulomb's law.
     pub now: Vec<f64>,
 }
 
@@ -37,17 +38,17 @@ impl Default for LaggedFriction {
     }
 }
 
-/// The projection of a contact's impulses onto the impulses that a friction model allows.
+/// The projection of a contact's trial impulses onto the impulses that a friction model allows.
 pub(crate) trait FrictionProjection: Sized {
-    /// True if the model has a lagged number per row, which stays fixed during a solve.
+    /// True if the model has a number per contact that stays fixed during a solve.
     const LAGS: bool;
-    /// True if rows may have different contact laws.
+    /// True if the contacts of a problem may have different contact laws.
     const TAKES_PAIRS: bool = false;
     /// True if sweeps with this projection support walls that a force drives.
     const TAKES_DRIVES: bool = true;
 
-    /// Returns the allowed impulses (σ, λ_t) nearest to `trial`, in the metric diag(1, m_n/m_t), m/s. `lagged` is the
-    /// row's lagged number, m/s.
+    /// Returns the allowed shifted normal and tangential impulses (σ, λ_t), m/s, that are nearest to `trial` in the
+    /// metric diag(1, m_n/m_t). `lagged` is the contact's number that stays fixed during the solve, m/s.
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
@@ -95,7 +96,8 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
     }
 }
 
-/// Returns σ projected onto σ ≥ 0, and λ_t projected onto the friction bound that this σ allows, m/s.
+/// Returns the shifted normal impulse σ projected onto σ ≥ 0, and the tangential impulse λ_t projected onto the
+/// friction bound of this σ, m/s.
 #[inline(always)]
 pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -108,7 +110,7 @@ pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     [shifted, law::coulomb(tangential, law.friction_bound(shifted))]
 }
 
-/// The friction model `tresca`: the lagged number is the friction bound, m/s.
+/// The projection of the friction model `tresca`. The friction bound, m/s, stays fixed during a solve.
 pub(crate) enum BoundedFriction {}
 
 impl FrictionProjection for BoundedFriction {
@@ -120,7 +122,8 @@ impl FrictionProjection for BoundedFriction {
     }
 }
 
-/// The friction models `associated` and `desaxce`: the lagged number, m/s, is added to the normal velocity.
+/// The projection of the friction models `associated` and `desaxce`. They add a number, m/s, to the normal velocity of
+/// a contact that stays fixed during a solve.
 pub(crate) enum ConeFriction {}
 
 impl FrictionProjection for ConeFriction {
@@ -135,8 +138,9 @@ impl FrictionProjection for ConeFriction {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets the friction model of a problem whose rows and velocities are already set up. Computes the lagged numbers
-    /// from the present impulses (`tresca`) or from the velocities at the beginning of the step (`desaxce`).
+    /// Sets the friction model of a problem whose rows and velocities are already set up. Computes the numbers that
+    /// stay fixed during a solve: the friction bounds of `tresca` from the present impulses, or the opening speeds of
+    /// `desaxce` from the velocities at the beginning of the step.
     pub(crate) fn begin_friction(&mut self, model: FrictionModel) {
         self.friction.model = model;
         self.friction.now.clear();
@@ -155,13 +159,15 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Makes Coulomb's law the friction model again, and drops the lagged numbers.
+    /// Makes Coulomb's law the friction model again, and deletes the numbers that another model keeps fixed during a
+    /// solve.
     pub(crate) fn forget_bounds(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
     }
 
-    /// Recomputes the lagged numbers of the friction model from the present impulses and velocities.
+    /// Recomputes the friction bounds of `tresca` or the opening speeds of `desaxce` from the present impulses and
+    /// velocities.
     pub(crate) fn renew_friction(&mut self) {
         match self.friction.model {
             FrictionModel::Tresca => self.lag_by(bound),
@@ -170,8 +176,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the lagged number of each row to `lagged_of`, a function of the contact law, the row and its tangential
-    /// velocity.
+    /// Sets the number of each row that stays fixed during a solve to `lagged_of`, a function of the contact law, the
+    /// row and its tangential velocity.
     fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<M>, f64) -> f64) {
         let mut lagged = std::mem::take(&mut self.friction.now);
         lagged.clear();
@@ -182,12 +188,12 @@ impl<M: Model> StepProblem<M> {
     }
 }
 
-/// Returns the lagged number of `tresca` after a solve: the friction bound g, m/s.
+/// Returns the friction bound g of `tresca`, m/s, that follows from the impulses of a solve.
 fn bound<M: Model>(law: &ContactLaw, row: &Row<M>, _: f64) -> f64 {
     law.friction_bound(row.shifted_impulse)
 }
 
-/// Returns the lagged number s of `desaxce`, m/s, after a solve that ended with this tangential velocity.
+/// Returns the opening speed s of `desaxce`, m/s, that follows from the tangential velocity of a solve.
 fn opening<M: Model>(law: &ContactLaw, _: &Row<M>, tangential_velocity: f64) -> f64 {
     law.friction * tangential_velocity.abs()
 }
@@ -202,7 +208,8 @@ mod tests {
         ContactLaw::new(friction, 0.0, FrictionCone::Shifted)
     }
 
-    /// Returns half the squared distance of two impulses in the metric of the projection: ½(σ − a)² + ½c(λ − b)².
+    /// Returns half the squared distance of two impulses (σ, λ) and (a, b) in the metric of the projection,
+    /// ½(σ − a)² + ½c(λ − b)² with c = m_n/m_t.
     fn distance<M: Model>(point: [f64; 2], trial: [f64; 2]) -> f64 {
         let across = M::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
         0.5 * ((point[0] - trial[0]).powi(2) + across)

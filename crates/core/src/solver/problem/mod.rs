@@ -51,15 +51,16 @@ use crate::world::{FrictionCone, World};
 /// changes them through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
 #[derive(Clone, Debug, Default)]
 pub struct StepProblem<M: Model> {
-    /// The grains, with their velocities before the step, without contacts, and with the rows' impulses.
+    /// The grains, with three velocities each: before the step, after the step without contacts, and with the rows'
+    /// impulses.
     pub bodies: Bodies<M>,
-    /// One row per contact.
+    /// The data of the contacts, one row per contact.
     pub rows: ContactRows<M>,
-    /// The contact law of all rows; rows with their own numbers modify it ([`StepProblem::law_of`]).
+    /// The contact law of all contacts. Contacts with their own numbers modify it ([`StepProblem::law_of`]).
     pub law: ContactLaw,
     /// Fixed bodies whose surfaces move, and walls that a force drives.
     pub(crate) walls: MovingWalls,
-    /// The friction model, and the numbers of each row that it keeps fixed during a solve.
+    /// The friction model, and the numbers of each contact that it keeps fixed during a solve.
     pub(crate) friction: LaggedFriction,
     /// Scale of velocity errors, m/s: √(g d), the speed after a fall by half a mean diameter d. Without gravity
     /// C₀/m_ij, the acceleration by cohesion, replaces g.
@@ -73,7 +74,7 @@ pub struct StepProblem<M: Model> {
     /// Unit vector along the sum of the normals of the contacts with fixed bodies; 0 if the sum is 0.
     pub(super) way_out: DVec2,
     pub(super) order: RowOrder,
-    /// √m_ij, the root of each row's effective mass, kg^½, for methods with scaled variables.
+    /// √m_ij, the square root of each contact's effective mass, kg^½, for methods with scaled variables.
     pub(super) root_masses: Vec<f64>,
 }
 
@@ -162,7 +163,8 @@ impl<M: Model> StepProblem<M> {
         self.begin_friction(settings.friction_model);
     }
 
-    /// Records the numbers of each row's law. The capture speed is 0 for a pair that does not touch yet.
+    /// Records the numbers of each contact's law: friction, restitution and capture speed. The capture speed is 0 for a
+    /// pair that does not touch yet.
     fn take_numbers(
         &mut self,
         world: &World,
@@ -199,7 +201,7 @@ impl<M: Model> StepProblem<M> {
         });
     }
 
-    /// Creates the rows; the first `fixed` rows are contacts with fixed bodies.
+    /// Creates the rows, one per contact; the first `fixed` rows are contacts with fixed bodies.
     fn fill_rows(
         &mut self,
         world: &World,
@@ -270,7 +272,7 @@ impl<M: Model> StepProblem<M> {
         *touching_mass = masses.map(|(mass, touches)| if *touches { *mass } else { 0.0 }).sum();
     }
 
-    /// Makes Coulomb's law the friction model: clips the tangential impulses to its bound and recomputes the
+    /// Makes Coulomb's law the friction model: limits the tangential impulses to its bounds and recomputes the
     /// velocities.
     pub fn take_coulombs_law(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
@@ -319,7 +321,8 @@ impl<M: Model> StepProblem<M> {
         if self.touches.is_empty() { self.bodies.masses.iter().sum() } else { self.touching_mass }
     }
 
-    /// Sets the bodies' velocities to their velocities without contacts plus the changes due to the rows' impulses.
+    /// Sets the bodies' velocities to their velocities without contacts plus the changes due to the impulses of all
+    /// rows.
     pub fn form_velocities(&mut self) {
         let Bodies { now, free, .. } = &mut self.bodies;
         now.clone_from(free);
@@ -370,13 +373,14 @@ impl<M: Model> StepProblem<M> {
         rows.contacts = sorted.iter().map(|&row| rows.contacts[row as usize]).collect();
     }
 
-    /// Returns the capture speed C₀Δt/m_ij of row `number`, m/s.
+    /// Returns the capture speed of the contact in row `number`, C₀Δt/m_ij (cohesion force times time step, divided by
+    /// effective mass), m/s.
     #[inline(always)]
     pub fn capture(&self, number: usize) -> f64 {
         self.rows.capture(number, &self.law)
     }
 
-    /// Returns the contact law of row `number`.
+    /// Returns the contact law of the contact in row `number`.
     #[inline(always)]
     pub fn law_of(&self, number: usize) -> ContactLaw {
         self.rows.law(number, &self.law)
@@ -387,19 +391,20 @@ impl<M: Model> StepProblem<M> {
         self.law.all_rubs() && self.rows.frictions.is_empty()
     }
 
-    /// Returns the reduced impulses (λ_n, λ_t) of row `number`, without the shift by the capture speed, m/s.
+    /// Returns the impulses (λ_n, λ_t) of the contact in row `number`, divided by its effective mass and without the
+    /// shift by the capture speed, m/s.
     #[inline(always)]
     pub fn reduced_impulse(&self, number: usize, row: &Row<M>) -> [f64; 2] {
         [row.shifted_impulse - self.capture(number), row.tangential_impulse]
     }
 
-    /// Returns an iterator over the rows and their numbers.
+    /// Iterates over the rows (the data of the contacts) and their numbers.
     pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<M>)> {
         self.rows.iter().enumerate()
     }
 
-    /// Calls `visit` for each row in order, with the row's relative velocity (v_n, v_t), m/s, if the bodies have the
-    /// velocities `bodies`. v_t is relative to moving surfaces.
+    /// Calls `visit` for each row (contact) in order, with the relative velocity (v_n, v_t) of the contact, m/s, if the
+    /// bodies have the velocities `bodies`. v_t is relative to moving surfaces.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,
@@ -437,8 +442,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the rows' reduced impulses, m/s, in the order of [`ContactRows::read_impulses`], and recomputes the
-    /// velocities.
+    /// Sets the impulses of all rows, divided by the effective masses, m/s, in the order of
+    /// [`ContactRows::read_impulses`], and recomputes the velocities.
     pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let mut impulses = impulses.into_iter();
         for (row, impulse) in self.rows.iter_mut().zip(&mut impulses) {

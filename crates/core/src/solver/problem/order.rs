@@ -11,7 +11,8 @@ use crate::contact::{Contact, Numbering};
 use crate::solver::method::Ordering;
 use crate::world::World;
 
-/// Groups of rows that can be solved at the same time, among rows of one kind that are sorted by tiles and colours.
+/// Groups of rows (contacts) that can be solved at the same time. The rows are of one kind and sorted by tiles and
+/// colours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {
     /// For each colour of each tile, the number of the row after its last row, counted within the kind. Rows of one
@@ -23,7 +24,7 @@ pub(crate) struct RowGroups {
 }
 
 impl RowGroups {
-    /// Returns the ranges of rows of the colours of a tile, or of the contacts between tiles if `tile` is past the last
+    /// Returns the ranges of rows of each colour of a tile, or of the contacts between tiles if `tile` is past the last
     /// tile.
     pub(crate) fn colours_of(&self, tile: usize) -> impl Iterator<Item = Range<usize>> {
         let start_of = |ends: &[usize], at: usize| at.checked_sub(1).map_or(0, |at| ends[at]);
@@ -58,7 +59,7 @@ pub(crate) struct RowOrder {
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
     tiles: Tiles,
-    /// Pairs of a group number, tile · [`COLOURS`] + colour, and a contact.
+    /// Pairs of a group number (tile · [`COLOURS`] + colour) and the number of a contact.
     coloured: Vec<(u32, u32)>,
     /// Contacts whose grains are in different tiles.
     between: Vec<u32>,
@@ -224,19 +225,19 @@ impl RowOrder {
     }
 }
 
-/// Number of grains per tile of a dense pile: the data of 512 grains take 16 KB, a third of the first-level cache of a
-/// current processor. With fewer grains, more contacts lie between tiles. With more grains, the rows that pass through
-/// the cache push grains out of it, and a small pile has too few tiles for several threads.
+/// Number of grains per tile of a dense pile: the velocities of 512 grains take 16 KB, a third of the first-level cache
+/// of a current processor. With fewer grains, more contacts lie between tiles. With more grains, the rows that pass
+/// through the cache push velocities out of it, and a small pile has too few tiles for several threads.
 const GRAINS_IN_TILE: usize = 512;
-/// Largest number of grains that are a single tile: their rows fit in the second-level cache, and waking a thread costs
-/// more than it gains.
+/// Largest number of grains that form a single tile: their rows fit in the second-level cache, and waking a thread
+/// costs more than it gains.
 const GRAINS_IN_ONE: usize = 2048;
 /// Minimum mean number of grains per tile of a scene that is not dense, so that empty tiles cost nothing.
 const LEAST_GRAINS_A_TILE: usize = 64;
 
-/// The tile of each grain. Tiles are squares of the plane, so small that the data of one tile's grains stay in the
-/// first-level cache while its contacts are solved. Tiles share no grain, so several tiles can be solved at the same
-/// time.
+/// The tile of each grain. Tiles are squares of the plane, so small that the velocities of one tile's grains stay in
+/// the first-level cache while its contacts are solved. Tiles share no grain, so several tiles can be solved at the
+/// same time.
 #[derive(Clone, Debug, Default)]
 struct Tiles {
     of_grain: Vec<u32>,

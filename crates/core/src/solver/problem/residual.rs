@@ -25,7 +25,7 @@ pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
 }
 
-/// Computes the sums over the rows that make up [`residual`].
+/// Computes the sums over all contacts that make up [`residual`].
 fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
@@ -142,7 +142,7 @@ impl Sums {
         }
     }
 
-    /// Adds the errors (e_n, e_t) of a row in the natural map, divided by its effective mass, m/s.
+    /// Adds a contact's errors (e_n, e_t) in the natural map, divided by its effective mass, m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -158,8 +158,8 @@ impl Sums {
         }
     }
 
-    /// Adds a row's contribution to the denominator, from its relative velocity (v_n, v_t) without contact impulses,
-    /// m/s.
+    /// Adds a contact's contribution to the denominator of the residual, from its relative velocity (v_n, v_t) without
+    /// contact impulses, m/s.
     #[inline(always)]
     fn add_scale<M: Model>(&mut self, row: &Row<M>, free: [f64; 2]) {
         let squared_mass = row.effective_mass * row.effective_mass;
@@ -200,7 +200,8 @@ pub(super) fn squared_rolling<M: Model>(problem: &StepProblem<M>) -> f64 {
     rolling.map(|(row, rolling)| (row.effective_mass * rolling.impulse).powi(2)).sum()
 }
 
-/// Returns the squared impulse P², (N·s)², of reduced impulses (λ_n, λ_t), m/s, with the effective mass `mass`, kg.
+/// Returns the squared impulse P², (N·s)², of impulses (λ_n, λ_t) that are divided by the effective mass `mass` (kg),
+/// m/s.
 #[inline(always)]
 pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
     mass * mass * (normal * normal + tangential * tangential)

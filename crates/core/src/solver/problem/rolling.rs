@@ -47,21 +47,21 @@ pub struct Rolling {
 }
 
 impl Rolling {
-    /// Returns the largest reduced rolling impulse |ψ| at a shifted normal impulse σ, m/s.
+    /// Returns the largest rolling impulse |ψ| = MΔt/(R m_ij), m/s, that a shifted normal impulse σ (m/s) allows.
     #[inline(always)]
     pub(crate) fn bound(&self, law: &ContactLaw, shifted_impulse: f64) -> f64 {
         self.friction * law::signorini(law.rubbing(shifted_impulse))
     }
 
-    /// Returns the reduced rolling impulse ψ, m/s, that solves the contact if its rolling velocity v_r is now
-    /// `velocity`, m/s.
+    /// Returns the rolling impulse ψ = MΔt/(R m_ij), m/s, that satisfies the law of rolling resistance if the rolling
+    /// velocity v_r is now `velocity`, m/s.
     #[inline(always)]
     pub(crate) fn solved(&self, law: &ContactLaw, shifted_impulse: f64, velocity: f64) -> f64 {
         let trial = self.impulse - velocity / self.compliance;
         law::coulomb(trial, self.bound(law, shifted_impulse))
     }
 
-    /// Returns the error of the reduced rolling impulse ψ in the natural map, m/s.
+    /// Returns the error of the rolling impulse ψ = MΔt/(R m_ij) in the natural map, m/s.
     #[inline(always)]
     pub(crate) fn error(&self, law: &ContactLaw, shifted_impulse: f64, velocity: f64) -> f64 {
         self.impulse - self.solved(law, shifted_impulse, velocity)
@@ -74,19 +74,19 @@ impl Rolling {
         self.lever * M::coordinates(i)[2] - of_j
     }
 
-    /// Returns the derivatives of the rolling velocity by the velocity coordinates of body j (`on_j`) or of body i.
+    /// Returns the derivatives of the rolling velocity v_r by the velocity coordinates of body j (`on_j`) or of body i.
     #[inline(always)]
     pub(crate) fn gradient(&self, on_j: bool) -> [f64; 3] {
         [0.0, 0.0, if on_j { self.lever - 1.0 } else { self.lever }]
     }
 
-    /// Applies the reduced rolling impulse ψ, m/s, to body i. `share` is the mass ratio g_i = m_ij/m_i.
+    /// Applies the rolling impulse ψ = MΔt/(R m_ij), m/s, to body i. `share` is the mass ratio g_i = m_ij/m_i.
     #[inline(always)]
     pub(crate) fn turn_i<M: Model>(&self, i: &mut M::Body<f64>, share: f64, impulse: f64) {
         turn::<M>(i, 2.0 * share * self.lever * impulse);
     }
 
-    /// Applies the reduced rolling impulse ψ, m/s, to body j. `share` is the mass ratio g_i = m_ij/m_i.
+    /// Applies the rolling impulse ψ = MΔt/(R m_ij), m/s, to body j. `share` is the mass ratio g_i = m_ij/m_i.
     #[inline(always)]
     pub(crate) fn turn_j<M: Model>(&self, j: &mut M::Body<f64>, share: f64, impulse: f64) {
         turn::<M>(j, -2.0 * (1.0 - share) * (1.0 - self.lever) * impulse);

@@ -6,8 +6,8 @@ use crate::solver::kinematics::Model;
 use crate::world::World;
 
 impl<M: Model> StepProblem<M> {
-    /// Adds the rolling resistance of each row if the model has rolling and its coefficient is not 0. The coefficient
-    /// μ_r is `friction`, or comes from `numbers_of` if contacts have different coefficients.
+    /// Adds the rolling resistance of each contact if the model has rolling and its coefficient is not 0. The
+    /// coefficient μ_r is `friction`, or comes from `numbers_of` if contacts have different coefficients.
     pub(super) fn fill_rolling(
         &mut self,
         world: &World,
@@ -49,7 +49,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the surface speeds of rows whose fixed body turns.
+    /// Sets the surface speeds of contacts whose fixed body turns.
     pub(super) fn turn_surfaces(&mut self, contacts: &[Contact], surfaces: &MovingSurfaces<'_>) {
         for (rolling, &index) in self.rows.rolling.iter_mut().zip(&self.rows.contacts) {
             let surface = (surfaces.of)(&contacts[index as usize]);
@@ -71,8 +71,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Returns the rolling resistance of row `number`, and its rolling velocity v_r, m/s, if the bodies have the
-    /// velocities `bodies`. Returns `None` without rolling resistance.
+    /// Returns the rolling resistance of the contact in row `number`, and its rolling velocity v_r, m/s, if the bodies
+    /// have the velocities `bodies`. Returns `None` without rolling resistance.
     #[inline(always)]
     pub(crate) fn rolling(
         &self,

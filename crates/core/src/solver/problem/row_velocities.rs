@@ -9,15 +9,15 @@ use crate::threads;
 /// Relative (normal, tangential) velocities of one contact, m/s. The tangential velocity is relative to the surface of
 /// a fixed body if the surface moves.
 pub struct RowVelocities {
-    /// Velocities at the end of the step.
+    /// Normal and tangential velocity at the end of the step, m/s.
     pub now: [f64; 2],
-    /// Velocities at the beginning of the step.
+    /// Normal and tangential velocity at the beginning of the step, m/s.
     pub before: [f64; 2],
-    /// Velocities at the end of the step if no contact acted.
+    /// Normal and tangential velocity at the end of the step if no contact acted, m/s.
     pub free: [f64; 2],
 }
 
-/// Calls `visit` for each row of a problem with the row's number and relative velocities.
+/// Calls `visit` for each row (contact) of a problem with the row's number and relative velocities.
 pub fn for_each_row<M: Model>(
     problem: &StepProblem<M>,
     visit: impl FnMut(usize, &Row<M>, RowVelocities),
@@ -25,8 +25,8 @@ pub fn for_each_row<M: Model>(
     for_each_row_of(problem, 0..problem.rows.len(), visit);
 }
 
-/// Sums over the rows, in chunks of fixed length: `visit` adds a row to the sum of its chunk, and `join` adds the sum
-/// of the next chunk to the total.
+/// Sums over the rows (contacts), in chunks of fixed length: `visit` adds a row to the sum of its chunk, and `join`
+/// adds the sum of the next chunk to the total.
 pub(super) fn sum_of_rows<M: Model, S: Default + Send>(
     problem: &StepProblem<M>,
     visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,
@@ -67,8 +67,8 @@ fn for_each_row_of<M: Model>(
     }
 }
 
-/// Computes the normal velocity of every row, m/s, if the bodies have the velocities `bodies`. The velocity is relative
-/// to the wall if the wall moves. Clears `speeds` first.
+/// Computes the normal velocity of every contact, m/s, if the bodies have the velocities `bodies`. The velocity is
+/// relative to the wall if the wall moves. Clears `speeds` first.
 pub fn relative_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &[M::Body<f64>],

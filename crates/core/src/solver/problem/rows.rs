@@ -126,7 +126,7 @@ impl<M: Model> PairRow<M> {
     }
 }
 
-/// The rows of a step's problem, one per contact. Their numbers count the contacts with fixed bodies first, then the
+/// The data of a step's contacts, one row per contact. Row numbers count the contacts with fixed bodies first, then the
 /// contacts between grains, each in the order of the sweep (`problem::order`).
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows<M: Model> {
@@ -186,7 +186,7 @@ impl<M: Model> ContactRows<M> {
         number >= self.fixed.len()
     }
 
-    /// Returns row `number`.
+    /// Returns row `number`, the data of a contact.
     pub(crate) fn get(&self, number: usize) -> &Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &self.fixed[number],
@@ -194,7 +194,7 @@ impl<M: Model> ContactRows<M> {
         }
     }
 
-    /// Returns a mutable reference to row `number`.
+    /// Returns a mutable reference to row `number`, the data of a contact.
     pub(crate) fn get_mut(&mut self, number: usize) -> &mut Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &mut self.fixed[number],
@@ -202,27 +202,28 @@ impl<M: Model> ContactRows<M> {
         }
     }
 
-    /// Returns the mass ratio g_i = m_ij/m_i of row `number`; 1 if the contact is with a fixed body.
+    /// Returns the mass ratio g_i = m_ij/m_i of the contact in row `number`; 1 if the contact is with a fixed body.
     #[inline(always)]
     pub(crate) fn share(&self, number: usize) -> f64 {
         number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
     }
 
-    /// Returns the speed along the tangent of the fixed body's surface in row `number`, m/s; 0 between grains.
+    /// Returns the speed along the tangent of the surface of the fixed body in row `number`, m/s; 0 for a contact
+    /// between grains.
     #[inline(always)]
     pub(crate) fn surface_speed(&self, number: usize) -> f64 {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
     }
 
-    /// Returns the capture speed of row `number`, m/s: the row's own, or the capture speed of `law` if rows have no
-    /// own.
+    /// Returns the capture speed of the contact in row `number`, m/s: its own, or the capture speed of `law` if the
+    /// contacts have no own capture speeds.
     #[inline(always)]
     pub(super) fn capture(&self, number: usize, law: &ContactLaw) -> f64 {
         if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
     }
 
-    /// Returns the contact law of row `number`: `law`, modified by the numbers of the row's pair of materials, if it
-    /// has any.
+    /// Returns the contact law of the contact in row `number`: `law`, modified by the numbers of the contact's pair of
+    /// materials, if it has any.
     #[inline(always)]
     pub(crate) fn law(&self, number: usize, law: &ContactLaw) -> ContactLaw {
         law_of_row([&self.frictions, &self.captures], number, law)
@@ -259,8 +260,8 @@ impl<M: Model> ContactRows<M> {
     }
 }
 
-/// Returns the contact law of row `number`: `law`, with the row's own friction coefficient and capture speed (m/s) if
-/// these lists are not empty.
+/// Returns the contact law of the contact in row `number`: `law`, with the contact's own friction coefficient and
+/// capture speed (m/s) if these lists are not empty.
 #[inline(always)]
 pub(crate) fn law_of_row(
     [frictions, captures]: [&[f64]; 2],

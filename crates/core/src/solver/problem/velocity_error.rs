@@ -92,7 +92,7 @@ pub(super) struct ErrorSums {
     gap: f64,
     /// Σ m_ij (v^free)², with v^free the contact velocities without contact impulses as in the residual, J.
     undone: f64,
-    /// Σ m_ij |λ|² of the reduced impulses, J.
+    /// Σ m_ij |λ|², J, with λ the impulses divided by the effective masses.
     impulses: f64,
     /// Sums of squared shortfalls, (m/s)²: Σ (z/(n·u))² of contacts with fixed bodies, and Σ z² of the other contacts.
     /// `counts` has the number of contacts in each sum.
@@ -111,7 +111,7 @@ impl ErrorSums {
         }
     }
 
-    /// Adds a row under the friction model that the problem is solved under.
+    /// Adds the contribution of a contact under the friction model that the problem is solved under.
     #[inline(always)]
     fn add_by_model<M: Model>(
         &mut self,
@@ -148,7 +148,7 @@ impl ErrorSums {
         self.add(problem, number, row, of_normal + rubbing + tangential * across, lacking);
     }
 
-    /// Adds a row under Coulomb's law.
+    /// Adds the contribution of a contact under Coulomb's law.
     #[inline(always)]
     pub(super) fn add_by_law<M: Model>(
         &mut self,
@@ -179,7 +179,8 @@ impl ErrorSums {
         self.add(problem, number, row, of_contact, lacking);
     }
 
-    /// Adds a row's contribution to S, divided by its effective mass, (m/s)², and its shortfall z, m/s.
+    /// Adds a contact's contribution to the duality gap S, divided by its effective mass, (m/s)², and its shortfall z,
+    /// m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -199,8 +200,8 @@ impl ErrorSums {
         self.counts[kind] += 1.0;
     }
 
-    /// Returns the velocity error, m/s: the larger of √S over the root of the mass and of the motion f that ends
-    /// shortfalls; NaN if S is NaN.
+    /// Returns the velocity error, m/s: the larger of √S (S is the duality gap) divided by the root of the mass, and of
+    /// f, the motion that ends all shortfalls. Returns NaN if S is NaN.
     pub(super) fn error<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         // A gap S within the rounding of the impulses counts as 0.
         let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;

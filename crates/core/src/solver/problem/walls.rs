@@ -34,7 +34,7 @@ use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
 use crate::solver::kinematics::Model;
 
-/// Marks a row whose fixed body is not a driven wall.
+/// Marks a contact whose fixed body is not a driven wall.
 const NONE: u32 = u32::MAX;
 
 /// Motion of the surface of a fixed body at a contact.
@@ -104,7 +104,7 @@ impl DrivenBy {
     }
 }
 
-/// A contact with a driven wall.
+/// The data of a contact with a wall that a force drives.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenRow {
     /// Number of the contact's row among the rows against fixed bodies.
@@ -150,7 +150,7 @@ impl MovingWalls {
         self.driven_row_of.clear();
     }
 
-    /// Returns the data of row `number` as a contact with a driven wall, if its fixed body is a driven wall.
+    /// Returns the data of the contact in row `number` if its fixed body is a driven wall.
     #[inline(always)]
     pub(crate) fn driven_row(&self, number: usize) -> Option<&DrivenRow> {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
@@ -217,7 +217,7 @@ impl<M: Model> StepProblem<M> {
         speed
     }
 
-    /// Returns the speed of the fixed body of row `number` along the normal, m/s; 0 if it does not move.
+    /// Returns the speed of the fixed body of the contact in row `number` along the normal, m/s; 0 if it does not move.
     #[inline(always)]
     pub fn wall_speed(&self, number: usize) -> f64 {
         self.walls.speeds.get(number).copied().unwrap_or(0.0)
@@ -313,14 +313,14 @@ impl<M: Model> StepProblem<M> {
         !self.walls.driven.is_empty()
     }
 
-    /// Returns true if the fixed body of row `number` is a driven wall.
+    /// Returns true if the fixed body of the contact in row `number` is a driven wall.
     #[inline(always)]
     pub(crate) fn gives_way(&self, number: usize) -> bool {
         self.walls.driven_row(number).is_some()
     }
 
-    /// Allows the bodies of row `number` to approach each other with up to `allowed`, m/s. `wall_speed` is the speed of
-    /// the fixed body along the normal, m/s.
+    /// Allows the bodies of the contact in row `number` to approach each other with up to `allowed`, m/s. `wall_speed`
+    /// is the speed of the fixed body along the normal, m/s.
     pub(crate) fn let_close(&mut self, number: usize, allowed: f64, wall_speed: f64) {
         self.rows.get_mut(number).restitution_velocity = allowed - wall_speed;
         let MovingWalls { driven_rows, driven_row_of, .. } = &mut self.walls;
@@ -399,7 +399,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Updates the rows to the present speeds of driven walls.
+    /// Recomputes the terms of the rows that depend on the present speeds of driven walls.
     pub(crate) fn tell_of_walls(&mut self) {
         let MovingWalls { driven, driven_rows, speeds, .. } = &mut self.walls;
         for known in driven_rows {

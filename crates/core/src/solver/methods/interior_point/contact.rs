@@ -27,7 +27,8 @@ pub(super) const PAIRS: usize = 3;
 
 /// The set of impulses (σ, λ) that a friction model allows a contact.
 pub(super) trait Shape {
-    /// First index of the slacks that the shape has; `END` is the index after the last.
+    /// Index of the first slack that a contact of this shape has; `END` is the index after the last. Slack 0 belongs to
+    /// σ ≥ 0.
     const FIRST: usize;
     const END: usize;
     /// True if the two slacks of friction replace the impulses as variables.
@@ -98,7 +99,8 @@ pub(super) struct PathContact {
     pub velocity: [f64; 2],
     /// Regularisation ε of this contact.
     pub compliance: f64,
-    /// Change of an impulse, or of a slack on the cone, per velocity along it: the inverse of S in that direction.
+    /// For each impulse component, or slack on the cone: its change per velocity along it, the inverse of S in that
+    /// direction.
     pub mobility: [f64; PAIRS],
 }
 
@@ -144,7 +146,7 @@ impl PathContact {
         if !S::CONE && !S::LEANS && self.bound == 0.0 { 1 } else { S::END }
     }
 
-    /// Computes the mobilities from slacks, multipliers and the regularisation ε.
+    /// Computes the mobilities of the contact from its slacks, multipliers and regularisation ε.
     #[inline(always)]
     pub(super) fn stiffen<S: Shape>(&mut self, numbers: ContactNumbers) {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];

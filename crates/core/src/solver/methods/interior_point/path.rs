@@ -45,10 +45,10 @@ const POLISH_AGAIN: f64 = 0.1;
 const FAR_NEARER: f64 = 1e-2;
 /// Number of sweeps whose result is used if the path finds no solution.
 const SWEEPS_INSTEAD: u32 = 100;
-/// Number of starts on the path of a convex model, each further from the end of the path.
+/// Maximum number of starts on the path of a convex model, each further from the end of the path.
 const STARTS: u32 = 4;
 
-/// Number of starts on the path of Coulomb's law before another method continues.
+/// Maximum number of starts on the path of Coulomb's law before another method continues.
 const FOLDED_STARTS: u32 = 4;
 /// Number of sweeps between two starts on the path of Coulomb's law.
 const SWEEPS_BETWEEN: u32 = 30;
@@ -61,9 +61,9 @@ const SHORT_STEP: f64 = 0.05;
 const LONG_STEP: f64 = 0.3;
 /// Minimum and maximum regularisation ε of a contact that limits a step.
 const SOFT: [f64; 2] = [1e-3, 1.0];
-/// Factor by which ε of a contact that limits a step grows per step.
+/// Factor by which the regularisation ε of a contact that limits a step grows per step.
 const SOFTENING: f64 = 30.0;
-/// Factor by which ε of all other contacts falls per step.
+/// Factor by which the regularisation ε of all other contacts falls per step.
 const HARDENING: f64 = 0.5;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
@@ -298,8 +298,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         false
     }
 
-    /// Increases ε of the contacts of bodies that limited a step of length `share`, and decreases ε of all other
-    /// contacts.
+    /// Increases the regularisation ε of the contacts of bodies that limited a step of length `share`, and decreases ε
+    /// of all other contacts.
     fn soften(&mut self, share: f64) {
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { contacts, step, stopped, .. } = &mut **workspace;

@@ -31,8 +31,8 @@ const SWEEPS_LAST: u32 = 2;
 const CENTRE: f64 = 1e3;
 /// Factor of the product of slack and multiplier from one start to the next.
 const FURTHER_UP: f64 = 1e3;
-/// Friction bounds below this fraction of the root mean square change of the impulses count as 0, because rounding
-/// leaves no interior between them.
+/// Friction bounds below this fraction of the root mean square change of the impulses count as 0, because there is no
+/// room between them.
 const LEAST_BOUND: f64 = 1e-10;
 
 /// Work memory of a solve whose bodies have `D` degrees of freedom.

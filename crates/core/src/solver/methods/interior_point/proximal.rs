@@ -39,20 +39,21 @@ const FACTOR: f64 = 0.1;
 const PATIENCE: u32 = 40;
 /// Maximum number of factorisations of a solve that finishes the path of the interior point.
 const FEW: u32 = 16;
-/// Fraction of its first value at the present ε to which ∇F·M⁻¹∇F must fall before ε is reduced.
+/// Ratio of the squared gradient norm ∇F·M⁻¹∇F to its first value at the present compliance ε, at which ε is reduced.
 const NEAR_MINIMUM: f64 = 1e-4;
 /// Maximum number of evaluations of the derivative F′ in a line search.
 const TRIALS: u32 = 40;
-/// Fraction of its value at the beginning of a line search below which the derivative F′ counts as 0.
+/// Ratio of the derivative F′ to its value at the beginning of a line search, at or below which F′ counts as 0.
 const ROOT: f64 = 1e-9;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Continues from the present impulses of the path, which are near a solution. Returns true if that ends the solve.
+    /// Continues from the present impulses of the path, which are near a solution. Returns true if the problem is then
+    /// solved.
     pub(super) fn polish(&mut self) -> bool {
         self.approach(CLOSE, FEW, FEW)
     }
 
-    /// Starts from the impulses with the smallest residual so far. Returns true if that ends the solve.
+    /// Starts from the impulses with the smallest residual so far. Returns true if the problem is then solved.
     pub(super) fn solve_from_far(&mut self) -> bool {
         let PathWorkspace { contacts, best, .. } = &mut *self.workspace;
         for (contact, &impulse) in contacts.iter_mut().zip(&*best) {

@@ -108,7 +108,7 @@ fn bodies_of<M: Model, const D: usize>(
 }
 
 /// Adds the momentum changes Hᵀ m p, kg m/s, to `momenta`, which are in elimination order. `impulses` are the impulses
-/// (σ, λ) of each row, m/s.
+/// (σ, λ) of each contact, m/s.
 #[inline(always)]
 pub(super) fn push_all<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -126,8 +126,8 @@ pub(super) fn push_all<M: Model, const D: usize>(
     }
 }
 
-/// Calls `visit` for each row with its number and the change of (v_n, v_t), m/s, that follows from `changes`, the
-/// changes of the bodies' velocities in elimination order.
+/// Calls `visit` for each contact with its row number and the change of (v_n, v_t), m/s, that follows from `changes`,
+/// the changes of the bodies' velocities in elimination order.
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
     problem: &StepProblem<M>,
