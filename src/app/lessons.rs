@@ -77,8 +77,8 @@ fn waits_at_start(run: &WatchedRun) -> bool {
     run.frame.at_start() && !run.frame.playing
 }
 
-/// Seed of the lessons' pile. In all lessons its slump is within the middle half of sixteen other piles. The built-in
-/// pile, which was chosen because it shows the paper's pattern, does not have this property.
+/// Seed of the lessons' pile. In all lessons the slump of this pile is within the interquartile range of sixteen other
+/// piles. The slump of the built-in pile is not, because that pile was chosen to show the paper's pattern.
 const SEED: u64 = 15;
 /// Grains at rest of the pile made from [`SEED`]. They are stored because their deposition takes seconds.
 const GRAINS: &str = include_str!("../../assets/pile_138_seed15.csv");

@@ -221,7 +221,7 @@ pub(super) const CHECKPOINT: &str = "checkpoint.slump";
 /// Name of the file with states that wait to be drawn, if these states must survive the end of the process.
 pub(super) const WAITING: &str = "checkpoint.states";
 
-/// State of each output of a run at a checkpoint, so that a resumed run can cut the outputs off at this moment.
+/// Lengths of all outputs of a run at a checkpoint. A resumed run cuts the outputs off at these lengths.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Marks {
@@ -239,7 +239,7 @@ pub(super) struct Marks {
     pub restarted_from: Option<Instant>,
     /// Moments at which the same command resumed the run; empty in a run without interruption.
     pub went_on_at: Vec<Instant>,
-    /// Length of the recording of grains and contacts.
+    /// Extent of the recording of grains and contacts: its numbers of frames and rows.
     pub recording: RecordingMark,
     /// Sums over contact pairs since the last frame of the recording.
     pub sums: ForceSums,
@@ -248,7 +248,7 @@ pub(super) struct Marks {
 /// State from which a run starts or resumes.
 pub(super) struct Beginning {
     pub state: SavedState,
-    /// Marks of the outputs that the folder already contains.
+    /// Lengths of the outputs that the folder already contains.
     pub marks: Marks,
 }
 

@@ -124,7 +124,7 @@ impl<'a> RunWriter<'a> {
 
     /// Flushes all outputs to the disk and returns their marks, for a checkpoint.
     fn marks(&mut self) -> Result<Marks> {
-        // The recording keeps a mark of its own for each step.
+        // The recording counts its own frames and rows; `flush` returns these numbers when the data are in the files.
         let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
         Ok(Marks {
             table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,

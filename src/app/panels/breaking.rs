@@ -18,7 +18,7 @@ const MOST_GRAINS: usize = 3_000;
 /// Bonds of one world that broke recently.
 #[derive(Default)]
 pub(super) struct BreakingBonds {
-    /// Number of the load, and simulated time (s), of the moment that was shown last.
+    /// Number of the loaded initial state (counted from 1), and simulated time (s), of the moment that was shown last.
     seen: (u64, f64),
     /// Pairs of grains that pulled each other at that moment.
     pulling: BTreeSet<[u32; 2]>,
