@@ -5,8 +5,8 @@ use super::methods::{Memory, SolveReport, solve_by_method};
 use super::problem::{StepProblem, is_solved};
 use super::settings::SolverSettings;
 
-/// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
-/// the rows' impulses.
+/// Solves a prepared contact problem with the method of the settings. Changes the velocities in `problem.bodies` and
+/// the impulses of `problem.rows`.
 ///
 /// ```
 /// use slump_core::contact::ContactList;

@@ -31,8 +31,8 @@ pub(crate) struct Elimination {
     pub starts: Vec<u32>,
     /// Later neighbours of all positions, given by their own positions in the elimination order.
     pub later: Vec<u32>,
-    /// For each position, and each pair a < b of its later neighbours in lexicographic order: the number of block (a,
-    /// b).
+    /// For each position, and each pair a < b of its later neighbours in lexicographic order: the number of block
+    /// (a, b).
     pub targets: Vec<u32>,
     /// First positions of the supernodes, then the number of positions. A supernode is a run of positions, each of
     /// which has as later neighbours the next position and all later neighbours of the next position.

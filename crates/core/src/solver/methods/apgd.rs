@@ -29,7 +29,7 @@ use crate::solver::settings::SolverSettings;
 /// above 1, because the next step has about the same curvature.
 const MARGIN: f64 = 1.05;
 
-/// Solves a system from its present impulses. Every product with A counts as an iteration.
+/// Solves a contact system from its present impulses. Every product with its matrix A counts as an iteration.
 pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,

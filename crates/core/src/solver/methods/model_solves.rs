@@ -1,5 +1,5 @@
-//! The outer loop of friction models with lagged numbers (`problem::friction`), the same for all methods. Lagged
-//! numbers stay fixed during a solve.
+//! The outer loop of friction models that keep numbers fixed during a solve (`problem::friction`), the same for all
+//! methods.
 
 use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;

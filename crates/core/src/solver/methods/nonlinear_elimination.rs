@@ -1,5 +1,5 @@
-//! Non-linear elimination: before the next linearisation, the few contacts with most of the residual are solved
-//! separately, with the rest of the pile fixed (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
+//! Non-linear elimination: before the next linearisation, the few contacts that contribute most to the residual are
+//! solved separately, with the rest of the pile fixed (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
 //!
 //! The result is kept only if it reduces the residual of the whole pile. In an overfull box, contacts that are solved
 //! separately push each other harder and harder; without this condition discs kept moving at 7 √(g d).
@@ -40,8 +40,9 @@ pub(super) struct NonlinearElimination {
 }
 
 impl NonlinearElimination {
-    /// Selects the bodies of the contacts with most of the residual, and solves all contacts of these bodies and of
-    /// their neighbours under Coulomb's law. Reports do not count these sweeps, which visit only a part of the pile.
+    /// Selects the bodies of the contacts that contribute most to the residual, and solves all contacts of these bodies
+    /// and of their neighbours under Coulomb's law. The reported number of sweeps does not include these sweeps,
+    /// because they visit only a few contacts of the pile.
     pub(super) fn apply<M: Model>(&mut self, problem: &mut StepProblem<M>) {
         let before = residual(problem);
         problem.rows.read_impulses(&mut self.saved);

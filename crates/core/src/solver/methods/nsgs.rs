@@ -2,7 +2,7 @@
 //! result from the previous updates.
 //!
 //! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two scalar projections
-//! (`methods::sweep`). Friction models with lagged numbers (`problem::friction`) use the projection of the model.
+//! (`methods::sweep`). Friction models other than Coulomb's law (`problem::friction`) have their own projections.
 
 use super::model_solves::solve_models;
 use super::pass::{sweep_by, sweep_of_model};

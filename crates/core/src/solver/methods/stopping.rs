@@ -93,9 +93,9 @@ pub(in crate::solver) fn sweep_until_settled<P>(
     SolveReport { sweeps, stalled, ..SolveReport::default() }
 }
 
-/// Returns true if the stopping test is met after a sweep with the impulse change `change`. The other arguments are
-/// what the four tests need: the mean mass of the grains (kg), the sum of the squared impulses Σ P² ((N·s)²), the
-/// residual, and the velocity error.
+/// Returns true if the stopping test is met after a sweep with the impulse change `change`. The other arguments are the
+/// quantities that the four tests need: the mean mass of the grains (kg), the sum of the squared impulses Σ P²
+/// ((N·s)²), the residual, and the velocity error.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,

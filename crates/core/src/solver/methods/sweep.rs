@@ -124,7 +124,8 @@ impl<M: Model, T: Lanes> Local<M, T> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// Solves this contact of a grain with a fixed body.
+    /// Updates the impulses of this contact of a grain with a fixed body by the contact law, and the velocity of the
+    /// grain.
     #[inline(always)]
     pub(crate) fn solve<const MEASURE: bool>(
         &mut self,
@@ -141,7 +142,7 @@ impl<M: Model> FixedRow<M> {
 }
 
 impl<M: Model> PairRow<M> {
-    /// Solves this contact between two grains.
+    /// Updates the impulses of this contact between two grains by the contact law, and the velocities of the grains.
     #[inline(always)]
     pub(crate) fn solve<const MEASURE: bool>(
         &mut self,

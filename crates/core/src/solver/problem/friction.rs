@@ -122,8 +122,8 @@ impl FrictionProjection for BoundedFriction {
     }
 }
 
-/// The projection of the friction models `associated` and `desaxce`. They add a number, m/s, to the normal velocity of
-/// a contact that stays fixed during a solve.
+/// The projection of the friction models `associated` and `desaxce`. They add to the normal velocity of a contact a
+/// number, m/s, that stays fixed during a solve.
 pub(crate) enum ConeFriction {}
 
 impl FrictionProjection for ConeFriction {

@@ -1,24 +1,25 @@
 //! A contact in the interior point method, and its contribution to a Newton step.
 //!
-//! A friction model allows impulses p = (σ, λ), shifted normal and tangential, with G p + h ≥ 0. The rows of G are (1,
-//! 0) for σ ≥ 0, and (κ, ±1) for the two bounds of friction; κ = μ if the friction bound grows with σ, and κ = 0 if it
-//! is fixed during the solve (lagged). With slacks x = G p + h and multipliers y, the solution satisfies
+//! A friction model allows impulses p = (σ, λ), shifted normal and tangential, with G p + h ≥ 0. The rows of G are
+//! (1, 0) for σ ≥ 0, and (κ, ±1) for the two bounds of friction; κ = μ if the friction bound grows with σ, and κ = 0 if
+//! it is fixed during the solve. With slacks x = G p + h and multipliers y, the solution satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
 //! where w is the normal velocity with the term that the law adds, and v the tangential velocity. A = G, except in
-//! Coulomb's law, where the multipliers of friction have no component along the normal. With h now the change of (v_n,
-//! v_t), and D = diag(y/x), a Newton step towards the products x_k y_k = e_k satisfies for each contact
+//! Coulomb's law, where the multipliers of friction have no component along the normal. With δu the change of
+//! (v_n, v_t) in the step, and D = diag(y/x), a Newton step towards the products x_k y_k = e_k satisfies for each
+//! contact
 //!
-//! > S δp = b − h,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
+//! > S δp = b − δu,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
 //! > δx = G δp,  δy = e/x − y − D δx,
 //!
 //! with a small compliance ε that keeps S regular. ε changes the path but not its end. On the cone, the two slacks can
 //! replace p as variables, and S is diagonal in them.
 //!
 //! Slacks are separate variables with their own initial values and steps. If they were recomputed from the impulses, or
-//! updated by a difference of two changes, a small slack would be only rounding error. For the same reason velocity and
-//! change are subtracted from e/x one after the other.
+//! updated by a difference of two changes, a small slack would be only rounding error. For the same reason the velocity
+//! (w, v) and its change δu are subtracted from e/x one after the other.
 
 use crate::contact::law;
 

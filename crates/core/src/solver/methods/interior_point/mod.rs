@@ -5,12 +5,12 @@
 //! > ½‖V‖²_M + Σ m_ij s·σ,  V = V_free + M⁻¹ Hᵀ m (p − c),
 //!
 //! with V the velocities of the bodies, M their inertias, V_free their velocities without contacts, H the map from V to
-//! contact velocities, m the effective masses, s the lagged opening speed of the friction model and c the capture
-//! speed. V is unique. Each constraint has a slack and a multiplier (`contact`), and all their products are 0 at the
-//! solution. The method follows the path on which the products are equal and decrease (S. Mehrotra, 1992, for predictor
-//! and corrector; J. Gondzio, 1996, for further corrections). V is always computed from the impulses, so that rounding
-//! errors do not add up. Impulses are eliminated from each Newton step. One linear system for the change of the
-//! velocities remains,
+//! contact velocities, m the effective masses, s the opening speed that the friction model keeps fixed during a solve,
+//! and c the capture speed. V is unique. Each constraint has a slack and a multiplier (`contact`), and all their
+//! products are 0 at the solution. The method follows the path on which the products are equal and decrease (S.
+//! Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections). V is always computed from
+//! the impulses, so that rounding errors do not add up. Impulses are eliminated from each Newton step. One linear
+//! system for the change of the velocities remains,
 //!
 //! > (M + Hᵀ m S⁻¹ H) δV = Hᵀ m S⁻¹ b,
 //!

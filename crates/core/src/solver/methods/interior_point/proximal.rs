@@ -35,7 +35,8 @@ const CLOSE: f64 = 1e-5;
 const LEAST: f64 = 1e-10;
 /// Factor of the compliance ε from one minimum of F to the next.
 const FACTOR: f64 = 0.1;
-/// Number of factorisations that have not halved the residual, after which a solve from far away ends.
+/// Number of factorisations that have not halved the residual, after which a solve ends that started far from a
+/// solution.
 const PATIENCE: u32 = 40;
 /// Maximum number of factorisations of a solve that finishes the path of the interior point.
 const FEW: u32 = 16;
