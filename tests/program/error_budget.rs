@@ -95,8 +95,8 @@ fn parts_of_a_budget_join_to_what_one_machine_comes_to_and_cost_it_nothing() {
     assert!(2 * runs(&joined) < all, "{} runs of {all} were its own", runs(&joined));
 }
 
-/// A scene of a disc that falls freely from rest. With semi-implicit steps its position is y = −g t (t + Δt)/2, so the
-/// lost height at the time t is known exactly, and its error is proportional to Δt.
+/// A scene of a disc that falls freely from rest. With semi-implicit steps its position is y = −g t (t + Δt)/2 (g:
+/// gravity), so the lost height at the time t is known exactly, and the error of the height is proportional to Δt.
 const FALL: &str = "
 name = 'fall'
 mean_diameter = 1.0

@@ -323,7 +323,8 @@ fn numbers_beyond_all_reason_are_refused() {
     assert!(robot.shows("ρ is 2, but must be between 0 and 1"));
 }
 
-/// A scene file may contain such numbers, and so may the stored preferences of the last window.
+/// Opens a window with extreme numbers (such as Bond 1e308), which can come from a scene file or from the stored
+/// preferences of the last window. The numbers must not widen the panel.
 #[test]
 fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
     let places = |config: Config| {

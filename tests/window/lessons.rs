@@ -334,7 +334,7 @@ fn is_in_view(robot: &Robot, name: &str) -> bool {
     robot.state().controls.get(name).is_some_and(|rect| window.contains_rect(*rect))
 }
 
-/// Size of the smallest window in which these controls must be visible, in points.
+/// Size of the smallest window in which all controls that a lesson needs must be visible, in points.
 const SMALL: egui::Vec2 = egui::vec2(1024.0, 700.0);
 
 /// Settings in the first view, and the labels of their sliders.

@@ -1,4 +1,4 @@
-//! Tests of plots, comparisons and other views than that of the pile, and of controls that must stay in place.
+//! Tests of plots, comparisons and other views in the window, and of controls that must stay in place.
 
 use egui_kittest::kittest::Queryable;
 

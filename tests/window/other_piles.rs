@@ -45,8 +45,8 @@ fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
     }
 }
 
-/// Runs piles with the same seeds without a window. Returns the mean of their final slump, and half the width of its
-/// interval.
+/// Runs piles with the same seeds without a window. Returns the mean of their final slump, and half the width of its 95
+/// % interval.
 fn headless(settings: &Settings) -> (f64, f64) {
     let slump = |seed: u64| {
         let pile =

@@ -28,7 +28,7 @@ extern "C" {
     fn slump_store(text: &str);
 }
 
-/// Simulation in the web worker.
+/// The simulation engine in the web worker.
 #[wasm_bindgen]
 pub struct Engine(RemoteEngine<Opening>);
 
@@ -57,10 +57,11 @@ impl Engine {
     }
 }
 
-/// Computes the run of a link and returns the hash of its last state, for programs without a page.
+/// Computes the run that a link describes, and returns the hash of its last state. This is for programs that have no
+/// page.
 ///
 /// # Errors
-/// Names the fault of the link.
+/// If the link is invalid. The error names the fault.
 #[wasm_bindgen]
 pub fn state_of(link: &str) -> Result<String, JsError> {
     browser::state_of(link).map_err(|error| JsError::new(&error.to_string()))

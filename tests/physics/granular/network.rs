@@ -6,8 +6,8 @@ use crate::common::*;
 
 const EXACT: f64 = 1e-12;
 
-/// Returns a ring of four discs with a chain of two discs attached and a disc inside that presses on no other. At the
-/// side, two discs press on each other, and one disc is isolated.
+/// Returns a ring of four discs with a chain of two discs attached, and a disc inside the ring that presses on no other
+/// disc. At the side, two discs press on each other, and one disc is isolated.
 fn ring_and_chain() -> Moment {
     let place = |x: f64, y: f64| disc(2.0 * RADIUS * DVec2::new(x, y), RADIUS);
     let ring = [place(0.0, 0.0), place(1.0, 0.0), place(1.0, 1.0), place(0.0, 1.0)];
@@ -42,7 +42,7 @@ fn rattlers_are_taken_away_until_none_is_left() {
 
 #[test]
 fn a_body_that_does_not_move_holds_grains() {
-    // One disc is in a corner and has two contacts. The other disc lies on the floor and has one contact.
+    // Of two discs, one is in a corner and has two contacts. The other disc lies on the floor and has one contact.
     let floor = [RADIUS, 9.0 * RADIUS].map(|x| disc(DVec2::new(x, RADIUS), RADIUS));
     let walls = box_walls(DVec2::ZERO, DVec2::splat(1.0));
     let mut moment = among(discs(floor.to_vec()), walls, Vec::new());
@@ -63,7 +63,7 @@ fn clusters_are_what_contacts_join() {
         (pile.clusters, pile.largest_cluster)
     };
     assert_eq!(clusters(&moment), (3, 7));
-    // Without the disc that connects the end of the chain with the ring.
+    // Removes the disc that connects the end of the chain with the ring.
     moment.grains[4].lost = true;
     assert_eq!(clusters(&moment), (4, 5));
     moment.contacts.clear();
@@ -282,7 +282,7 @@ fn discs_on_a_line_have_the_box_around_them() {
     assert_close(pile.area, 4.0, EXACT, "A");
     assert_close(pile.stress_xx, 3.0, EXACT, "three forces of 4 N over 1 m each, by 4 m²");
     assert_eq!((pile.stress_yy, pile.stress_xy, pile.closed_cells), (0.0, 0.0, 0));
-    // A scene in one dimension.
+    // A scene in one dimension must have measured quantities, too.
     let mut cradle = built_in("cradle").expect("the cradle").simulation().expect("a run");
     cradle.take_steps(50).expect("finite steps");
     let pile = PileMeasures::of(&cradle.moment());

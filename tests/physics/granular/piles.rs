@@ -93,7 +93,7 @@ fn walls_of_all_shapes_take_their_part_of_the_stress() {
 #[test]
 fn stress_of_a_pile_at_rest_is_what_its_weight_says() {
     let mut scene = built_in("pile").expect("the pile");
-    // The walls of the box in which the pile was made, so that nothing moves.
+    // Adds the walls of the box in which the pile was made, so that nothing moves.
     let half_width = 8.0 * scene.mean_diameter;
     let walls = box_walls(DVec2::new(-half_width, -1.0), DVec2::new(half_width, 1.0));
     scene.boundaries.extend(walls);

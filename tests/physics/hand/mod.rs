@@ -23,7 +23,8 @@ fn heap() -> Scene {
     heap
 }
 
-/// Returns the heap with every combination of stepper and method that accepts it, and the name of the combination.
+/// Returns the scene [`heap`] with every combination of stepper and method that accepts the scene, and the name of the
+/// combination.
 fn in_every_way() -> Vec<(String, Scene)> {
     let mut heap = heap();
     heap.solver.max_sweeps = 200;

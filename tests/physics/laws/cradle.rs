@@ -3,8 +3,8 @@
 
 use crate::common::*;
 
-/// Runs a cradle for 2.5 s. Returns true if i and j are then more than 0.1 d apart. The latest shock, of a disc k that
-/// starts 8.5 d away, happens at √(2·7.5 d/g) = 1.5 s.
+/// Runs a cradle for 2.5 s. Returns true if the discs i and j are then more than 0.1 d apart. The latest shock, of a
+/// disc k that starts 8.5 d away, happens at √(2·7.5 d/g) = 1.5 s.
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;
     let run = after(&scene, (2.5 / dt).round() as usize);

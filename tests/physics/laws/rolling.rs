@@ -382,7 +382,7 @@ fn interval(numbers: &[f64]) -> (f64, f64) {
     let count = numbers.len() as f64;
     let mean = numbers.iter().sum::<f64>() / count;
     let squares = numbers.iter().map(|number| (number - mean).powi(2)).sum::<f64>();
-    // Student's t with 7 degrees of freedom.
+    // Student's t for 95 % and 7 degrees of freedom is 2.365.
     (mean, 2.365 * (squares / (count - 1.0) / count).sqrt())
 }
 

@@ -9,7 +9,8 @@ const BOND: f64 = 20.0;
 /// Largest rounding error of gaps, in diameters.
 const ROUNDING: f64 = 1e-4;
 
-/// Returns a scene of two weightless discs with a gap (in diameters) that separate at the speed `opening` (m/s).
+/// Returns a scene with this touch tolerance (in diameters): two weightless discs with a gap (in diameters) separate at
+/// the speed `opening` (m/s).
 fn pair(tolerance: f64, gap: f64, opening: f64, dt: f64, restitution: f64) -> Scene {
     let place = (RADIUS + 0.5 * gap * DIAMETER) * DVec2::X;
     let grains = [-1.0, 1.0]

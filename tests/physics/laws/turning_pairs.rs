@@ -47,7 +47,8 @@ fn a_pair_breaks_at_the_spin_that_its_bond_bears_where_bonds_have_a_length() {
     }
 }
 
-/// At this angular velocity the circular motion needs only 2e-4 of the bond's strength.
+/// Checks a pair whose circular motion needs only 2e-4 of the strength of its bond. A bond that ends at a gap of zero
+/// breaks nevertheless, and Slump warns. The pair stays together if the advice of the warning is followed.
 #[test]
 fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     let (bond, rate) = (1000.0, 10.0);
@@ -77,7 +78,8 @@ fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     }
 }
 
-/// In each step the gap grows by ω²Δt² r, so a bond with the overlap s lasts s/(ω²Δt² r) steps.
+/// In each step the gap of two discs of radius r that circle at the angular velocity ω grows by ω²Δt² r. So a bond with
+/// the overlap s lasts s/(ω²Δt² r) steps.
 #[test]
 fn the_gap_of_a_pair_grows_by_its_turning_in_each_step() {
     let (rate, dt) = (10.0, 1e-3);

@@ -54,8 +54,8 @@ fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     }
 }
 
-/// Returns the scene of [`against_fixed`], with a free disc j without weight instead of the fixed disc. Both discs
-/// drift.
+/// Returns the scene of [`against_fixed`], with a free disc j without weight instead of the fixed disc. Both discs have
+/// an additional common velocity.
 fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let mut scene = against_fixed(case, physics, direction);
     let drift = 0.3 * direction;
@@ -65,8 +65,8 @@ fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     scene
 }
 
-/// Takes one step and compares v^n and P with the case that the sign and size of A select. Returns the number of the
-/// case.
+/// Takes one step and compares the final normal velocity v^n and the normal impulse P with theory. Returns the number
+/// of the case (see the top of this file).
 fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
     let mut run = start(scene);
     run.step().expect("a finite state");

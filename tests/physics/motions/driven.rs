@@ -55,7 +55,7 @@ pub(super) fn carried(run: &Simulation, boundary: u32) -> f64 {
 #[test]
 fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
     for method in methods() {
-        // A sweep moves only a small part of a light wall's load from one column to the next: its mass fraction. So the
+        // A sweep moves only a small part of a light wall's load (its mass fraction) to the next column. So the
         // lightest wall is on one column.
         for (mass_ratio, grains) in [(1e-6, 3), (0.1, 15), (1.0, 15), (1e4, 15)] {
             // Methods that treat all contacts at once converge too slowly if a heavy wall is on light columns.
@@ -131,7 +131,7 @@ fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     let Boundary::HalfSpace { point, .. } = run.world().boundaries[0] else {
         panic!("it stays one")
     };
-    // The path is Σ Δt V over all steps, and the wall's speed V is FΔt/M at the end of the first step.
+    // The path is Σ Δt V over all steps. In the first step the force F and the mass M give the speed V = FΔt/M.
     assert_close(point.y, 0.5 * 1.5 * 0.1 * 0.101, 1e-12, "the way");
     drive_of(&mut scene).damping = 60.0;
     assert_close(drive(&after(&scene, 1000)).speed, 3.0 / 60.0, 1e-9, "F/c");
@@ -153,7 +153,7 @@ fn a_grain_that_hits_a_wall_of_a_mass_gets_the_impulse_of_both_masses() {
         scene.motions =
             vec![Motion { fixed_discs: vec![0], drive: Some(disc), ..Motion::default() }];
         let run = after(&scene, 3);
-        // The effective mass is given by 1/m_eff = 1/m + n_y²/M (m: grain, M: disc). The approach speed is 2 n_y.
+        // With the masses m (grain) and M (disc), 1/m_eff = 1/m + n_y²/M (n: normal). The approach speed is 2 n_y.
         let effective = 1.0 / (1.0 / of_grain + 0.64 / mass);
         let impulse = (1.0 + restitution) * effective * 1.6;
         let what = format!("{method}, {restitution}");
@@ -303,7 +303,7 @@ fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     steppers.flat_map(move |stepper| methods(stepper).map(move |info| (stepper, info.method)))
 }
 
-/// Returns jumping grains under a damped piston, with a second piston at the side, both with this mass (kg).
+/// Returns a scene of jumping grains between a damped piston above and a piston at one side, both of this mass (kg).
 fn jumping(mass: f64) -> Scene {
     let mut scene = pressed(mass);
     for (k, grain) in (0..).zip(&mut scene.grains) {
@@ -412,7 +412,7 @@ fn a_piston_on_springs_carries_its_pressure_and_its_energy_balances() {
 
 #[test]
 fn a_wall_on_springs_that_is_lighter_than_its_grains_may_swing_up() {
-    // The wall is on five springs of stiffness k = 2e4 N/m. It is stable if the substep h < 2 √(M/5k).
+    // The wall (mass M) is on five springs of stiffness k = 2e4 N/m. It is stable if the substep is below 2 √(M/5k).
     let fastest = |part: f64| {
         let mut scene = on_springs(0.01);
         scene.parameters.damping_ratio = 1e-9;
@@ -436,7 +436,7 @@ fn a_wall_on_springs_that_is_lighter_than_its_grains_may_swing_up() {
 /// Force on each wall, N.
 const FORCE: f64 = 0.03;
 
-/// Returns 36 discs of different sizes, loosely placed between a floor and three walls that press with [`FORCE`].
+/// Returns a scene of 36 discs of different sizes in loose positions between a floor and three walls with [`FORCE`].
 fn pressed_together(seed: u64) -> Scene {
     let mut random = random(seed);
     let grain = |k: i32| {

@@ -39,7 +39,8 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
     }
 }
 
-/// A table of angles tilts gravity to an angle θ with tan θ just below μ and later to one just above μ.
+/// A table of angles tilts gravity to an angle θ with tan θ just below μ, and later to an angle with tan θ just above
+/// μ.
 #[test]
 fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
     let mu: f64 = 0.3;

@@ -195,7 +195,7 @@ fn runs_go_on_from_a_file_bit_for_bit_across_crossings() {
     assert_eq!(after(&still, 600).observables().lost_grains, 0, "nothing moves by itself");
 }
 
-/// Moves all discs by the same vector (m) and returns the measured quantities.
+/// Moves all discs of a run by the same vector (m) and returns the measured quantities.
 fn moved(run: &Simulation, by: DVec2) -> MomentMeasures {
     let (mut moment, cell) = (run.moment(), run.world().periodic.expect("a cell"));
     moment.grains.iter_mut().for_each(|grain| grain.position = cell.wrap(grain.position + by));

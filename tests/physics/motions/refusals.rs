@@ -5,7 +5,7 @@ use super::driven::{drive_of, pressed};
 use super::sheared::{cell, gas};
 use crate::common::*;
 
-/// Returns a scene with a grain over a floor, a piston at the side, a fixed disc, and these motions.
+/// Returns a scene with a grain over a floor, a piston at the side, a fixed disc, and the given motions.
 fn with(motions: Vec<Motion>) -> Scene {
     let piston = piston(DVec2::new(-3.0, 0.0), DVec2::X, 0.1, 1.0);
     Scene {
@@ -296,7 +296,8 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
     );
 }
 
-/// Two discs are at the same position if the cell is periodic: across a side border, the lower border, or a corner.
+/// In a periodic cell, two discs can be at the same position across a side border, the lower border, or a corner. Slump
+/// refuses these scenes.
 #[test]
 fn two_discs_in_one_place_across_a_border_are_refused() {
     let both = Periodic::along_both([0.0, 1.0], [0.0, 1.0]);

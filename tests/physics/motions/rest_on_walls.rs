@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 const RADIUS: f64 = 0.05;
 const DT: f64 = 1e-3;
-/// Overlap at the start, in radii. It keeps bonds alive.
+/// Overlap at the start, in radii. With this overlap, bonds exist from the start.
 const OVERLAP: f64 = 1e-4;
 
 /// A disc rests in the corner of a square drum that turns at 12 rad/s. The centrifugal acceleration of 2.4 g presses

@@ -29,8 +29,8 @@ fn on_a_floor(shape: usize) -> Scene {
     scene
 }
 
-/// Returns the longest distance between the positions of a grain in the two frames of reference over all steps, in
-/// diameters.
+/// Runs a scene at rest and in a moving frame of reference. Returns the longest distance between the two positions of a
+/// grain over all steps, in diameters.
 fn difference_of_views(scene: &Scene) -> f64 {
     let (mut seen, mut velocity) = (scene.clone(), VELOCITY);
     if let Some(Boundary::Piston { speed, .. }) = seen.boundaries.first_mut() {

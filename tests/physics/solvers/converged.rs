@@ -10,8 +10,8 @@ const LEFT: f64 = 8.0;
 /// Allowed rounding error, relative to the norm of all contact impulses.
 const ROUNDING: f64 = 1e-12;
 
-/// Returns a scene of a disc that falls on a floor. Methods with an error once reported steps of this scene as solved
-/// without doing anything.
+/// Returns a scene of a disc that falls on a floor. In an earlier version, some methods reported steps of this scene as
+/// solved without doing anything.
 fn falling_disc() -> Scene {
     let disc = moving(0.006 * DVec2::Y, 5e-3, DVec2::ZERO);
     Scene { boundaries: vec![level()], ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), vec![disc]) }

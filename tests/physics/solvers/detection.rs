@@ -37,7 +37,7 @@ fn found(contacts: &ContactList) -> Vec<(u32, u32)> {
 }
 
 /// Checks that contacts that existed before still have their impulses and that new contacts have zero impulses. Then
-/// gives each contact an impulse that identifies it.
+/// gives each contact an impulse that identifies the contact.
 fn check_impulses(contacts: &mut ContactList, before: &[(u32, u32)]) {
     for (pair, impulse) in found(contacts).into_iter().zip(contacts.impulses_mut()) {
         let own = Impulse { normal: 1.0 + f64::from(pair.0), tangential: f64::from(pair.1) };

@@ -300,7 +300,7 @@ fn a_state_that_is_not_finite_is_told_of_with_what_helps() {
     assert!(words.contains("try 0 substeps"), "{words}");
 }
 
-/// Returns the scene with the stepper `range` and numbers at which bonds break within a short time.
+/// Returns the scene with the stepper `range` and parameters with which bonds break within a short time.
 fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
     scene.stepper = Stepper::Range;
     scene.solver.method = Method::Newton;

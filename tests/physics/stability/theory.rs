@@ -183,14 +183,15 @@ fn sliding(time_step_secs: f64, solver: SolverSettings) -> Simulation {
     start(&scene)
 }
 
-/// Returns the initial speed v₀, the friction coefficient μ, gravity g and the diameter d of the scene.
+/// Returns the initial speed v₀ (m/s), the friction coefficient μ, gravity g (m/s²) and the diameter d (m) of the scene
+/// `dilatancy`.
 fn numbers() -> [f64; 4] {
     let scene = dilatancy();
     let speed = scene.grains[0].velocity.x;
     [speed, scene.parameters.friction, scene.gravity.magnitude(), scene.mean_diameter]
 }
 
-/// Runs until the disc has stopped. Returns the distance from its start (m).
+/// Runs until the disc has stopped. Returns its displacement from the start, m.
 fn way(run: &mut Simulation) -> glam::DVec2 {
     let [speed, friction, gravity, _] = numbers();
     let start = run.place(0);

@@ -187,11 +187,12 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
     }
 }
 
-/// Returns ω/ω_c above which a bonded pair that turns as one body at ω breaks its bond. L is the distance of the
-/// centres, and ω_c = √(C₀/(m_ij L)) is the angular velocity at which C₀ is the centripetal force.
+/// Returns the ratio ω/ω_c above which a bonded pair that turns as one body at the angular velocity ω breaks its bond.
+/// L is the distance of the centres, and ω_c = √(C₀/(m_ij L)) is the angular velocity at which the cohesion force C₀ is
+/// the centripetal force (m_ij: effective mass).
 ///
-/// The bond pulls with C₀ up to the opening δ_c, and L²ω is conserved. So the pair opens to L(1 + δ) if ½ω²L²(1 − (1 +
-/// δ)⁻²) = (C₀/m_ij)Lδ.
+/// The bond pulls with C₀ up to the debonding distance δ_c, and L²ω is conserved. So the pair opens to L(1 + δ) if
+/// ½ω²L²(1 − (1 + δ)⁻²) = (C₀/m_ij)Lδ.
 fn tearing_part(delta: f64) -> f64 {
     (2.0 * delta / (1.0 - (1.0 + delta).powi(-2))).sqrt()
 }

@@ -165,7 +165,7 @@ fn settings_that_change_before_the_first_step_are_those_of_the_start() {
     }
 }
 
-/// Returns the mean and its standard error.
+/// Returns the mean of some numbers and the standard error of the mean.
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;

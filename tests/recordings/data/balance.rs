@@ -34,7 +34,7 @@ struct FrameTables {
     spins: Vec<f64>,
     radii: Vec<f64>,
     masses: Vec<f64>,
-    /// Indices of the grains i and j of each contact; j is `None` for other bodies.
+    /// Indices of the grains i and j of each contact; j is `None` if the other body is not a grain.
     pairs: Vec<(usize, Option<usize>)>,
     forces: Vec<DVec2>,
     tangential: Vec<f64>,
@@ -63,7 +63,8 @@ impl FrameTables {
 }
 
 /// Largest errors in the frames of a run. Errors of momentum and angular momentum are relative to the largest impulse
-/// and torque in a step, errors of border work and stress to the largest border work.
+/// and torque in a step. Errors of the work of the sheared borders and of the stress are relative to the largest border
+/// work.
 #[derive(Debug, Default)]
 struct Off {
     momentum: f64,
@@ -370,8 +371,8 @@ fn fixed_discs_that_move_are_recorded_as_they_go() {
             let cell = run.world().periodic.unwrap_or_default();
             let way = cell.shortest(to - from);
             let velocity = vectors(&after, ["vx", "vy"])[disc];
-            // A body on a circle deviates from the direction of its velocity by ½ωΔt (ω: angular velocity), which is
-            // this error in its speed.
+            // On a circle the mean velocity of a step differs from the velocity at its end by about ½ωΔt times the
+            // speed (ω: angular velocity).
             let spin = numbers(&after, "omega")[disc];
             let bend = (0.51 * secs * spin.abs() + 1e-9) * velocity.length();
             assert!((way / secs).distance(velocity) <= bend + 1e-12, "{name} {disc}: {velocity}");

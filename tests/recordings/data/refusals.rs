@@ -218,7 +218,8 @@ fn masses_densities_and_materials_of_a_file_are_used_in_every_format() {
     assert_eq!(masses_in(&columns), (vec![1e-5, 1e-2, 1e-2], vec![1, 0, 0], vec![true; 3]));
 }
 
-/// Tables in the default formats of pandas, numpy and spreadsheets.
+/// Checks tables in the default formats of pandas, numpy and spreadsheets. Slump refuses these tables and says how to
+/// correct them.
 #[test]
 fn a_table_of_another_program_is_refused_with_the_way_to_mend_it() {
     let folder = folder();
@@ -320,7 +321,8 @@ fn parquet_with_any_bit_turned_is_read_or_refused() {
     assert!(refused > 2_000, "{refused}");
 }
 
-/// Each of these files has caused an abrupt end of the program: no memory, a full stack, or a panic of the decoder.
+/// Checks small Parquet files with wrong numbers. In earlier versions each of these files has ended the program
+/// abruptly: by lack of memory, by a stack overflow, or by a panic of the decoder.
 #[test]
 fn small_parquet_that_lies_is_refused_in_a_sentence() {
     let folder = folder();
