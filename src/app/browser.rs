@@ -66,7 +66,7 @@ pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
     state.open(Opening::With { path, bytes, opening: Box::new(opening) });
 }
 
-/// Computes the first world of a link and returns the hash of its last state, for tests.
+/// Computes the first simulation of a link and returns the hash of its last state, for tests.
 ///
 /// # Errors
 /// Names the invalid part of the link.

@@ -8,7 +8,7 @@ use crate::render::{Camera, Style};
 /// Smallest and largest width of the view, as multiples of the width that shows the whole scene.
 const ZOOM_LIMITS: [f64; 2] = [1e-3, 30.0];
 
-/// The view of the scene, which all worlds of a window share.
+/// The view of the scene, which all simulations of a window share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneCamera {
     framed: bool,

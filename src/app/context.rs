@@ -34,9 +34,9 @@ pub(crate) enum Request {
     ForgetReleased,
     /// End the lessons.
     LeaveLessons,
-    /// Save the displayed state of the selected world.
+    /// Save the displayed state of the selected simulation.
     SaveState,
-    /// Save the session: all worlds with their history, and the arrangement of the window.
+    /// Save the session: all simulations with their history, and the arrangement of the window.
     SaveSession,
     /// Copy a link that reproduces the displayed moment.
     CopyLink,

@@ -125,11 +125,11 @@ const RATE_SECS: f64 = 0.1;
 /// Largest number of points of a drawn curve.
 const MOST_POINTS: usize = 2_000;
 
-/// Values of the frames that were shown, for each world and by number of step.
+/// Values of the frames that were shown, for each simulation and by number of step.
 #[derive(Debug, Default)]
 pub(crate) struct ExperimentSeries {
-    /// Numbers of the load and of the last earlier run, and number of worlds. If one of them changes, all values are
-    /// discarded.
+    /// Number of the loaded initial state, number of the last earlier run, and number of simulations. If one of these
+    /// numbers changes, all values are discarded.
     run: (u64, Option<u64>, usize),
     worlds: Vec<BTreeMap<u64, [f64; 2]>>,
 }
@@ -154,7 +154,7 @@ impl ExperimentSeries {
         }
     }
 
-    /// Returns the points of a world's curve in the plot.
+    /// Returns the points of a simulation's curve in the plot.
     fn points(&self, start: &LiveStart, world: usize) -> Vec<[f64; 2]> {
         let Some(values) = self.worlds.get(world) else { return Vec::new() };
         let values: Vec<[f64; 2]> = values.values().copied().collect();

@@ -134,14 +134,14 @@ impl Printers {
     }
 }
 
-/// Writes the observables of all worlds as a CSV table, and their description to a second file, because text lines in a
-/// CSV file would be read as data.
+/// Writes the observables of all simulations as a CSV table, and their description to a second file, because text lines
+/// in a CSV file would be read as data.
 pub(super) fn write_table(path: &Path, curves: &[Curve], texts: &Texts) -> Result<()> {
     write_file(&path.with_extension("csv.txt"), texts.lines().as_bytes())?;
     write_curves(path, curves)
 }
 
-/// Writes all rows of all curves to a table whose first column is the number of the world.
+/// Writes all rows of all curves to a table whose first column is the number of the simulation.
 fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let has_more = curves.iter().flat_map(Curve::rows).any(Observables::has_further_columns);
     let cells = |row: Observables| if has_more { row.with_further_columns() } else { row };

@@ -13,7 +13,7 @@ pub(crate) const STATE_ENDING: &str = "slump";
 pub(crate) const SESSION_ENDING: &str = "session";
 
 /// Returns the first part of the names of files that show a moment of a scene. It contains Bond and Δt if there is one
-/// world, or the number of worlds.
+/// simulation, or the number of simulations.
 pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String {
     let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
     let which = match settings {

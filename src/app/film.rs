@@ -40,7 +40,7 @@ const PART_OF_MOMENTS: f64 = 0.3;
 /// Largest number of pictures in a film. A larger number is probably a mistake of the user.
 const MOST_PICTURES: f64 = 1e5;
 
-/// For each world and each picture, the index of the stored state and the settings at that moment.
+/// For each simulation and each picture, the index of the stored state and the settings at that moment.
 type Moments = Vec<Vec<(usize, Settings)>>;
 
 /// A request to export a video or an animation.
@@ -60,8 +60,8 @@ pub(crate) struct FilmOrder {
 }
 
 impl FilmOrder {
-    /// Makes the film from one run per world and returns a message for the user. If the user cancelled before all runs
-    /// arrived, no film is made.
+    /// Makes the film from one run per simulation and returns a message for the user. If the user cancelled before all
+    /// runs arrived, no film is made.
     pub(crate) fn make(self, runs: &[TakenRun], reporter: &Reporter) -> Result<String> {
         let (format, count) = (self.format, self.picture.worlds.len());
         let made = if runs.len() == count { self.write(runs, reporter)? } else { None };

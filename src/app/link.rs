@@ -1,11 +1,11 @@
 //! Links. A link is a line of text from which a run can be computed again. It contains the origin of the scene and, for
-//! each world, the settings, their changes and the number of steps.
+//! each simulation, the settings, their changes and the number of steps.
 //!
 //! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
 //!
 //! The names are those of the command line. `from` is the number of a step; the settings behind it apply after that
-//! step. `to` is the number of steps of a world and ends the world; the next world follows. A setting that is left out
-//! keeps the value of the scene or its previous value.
+//! step. `to` is the number of steps of a simulation and ends the simulation; the next simulation follows. A setting
+//! that is left out keeps the value of the scene or its previous value.
 
 use std::sync::OnceLock;
 
@@ -39,7 +39,7 @@ const FORM: &str = "a line that Copy link gave: slump://run?…&to=STEP";
 /// Largest number of characters of a link that an error message shows.
 const MOST_SHOWN: usize = 60;
 
-/// The contents of a link: the origin of a scene, and the worlds with the settings that the user chose.
+/// The contents of a link: the origin of a scene, and the simulations with the settings that the user chose.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunLink {
     pub source: SceneSource,
@@ -61,8 +61,8 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
     }
 }
 
-/// Returns the link of these worlds. The flag is true if the user edited one of the worlds, because a link cannot
-/// express edits.
+/// Returns the link of these simulations. The flag is true if the user edited one of the simulations, because a link
+/// cannot express edits.
 ///
 /// # Errors
 /// If the run continued from a file, or if its scene no longer exists.
@@ -163,7 +163,7 @@ impl RunLink {
         settings.try_for_each(|settings| settings.validate())
     }
 
-    /// Returns the plans of the worlds, which begin with the settings `base` of the scene.
+    /// Returns the plans of the simulations, which begin with the settings `base` of the scene.
     pub(crate) fn plans(&self, base: &Settings) -> Vec<WorldPlan> {
         let plan = |world: &LinkedWorld| {
             let mut settings = *base;

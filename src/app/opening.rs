@@ -24,8 +24,8 @@ pub enum Opening {
     Scene(#[serde(with = "as_json")] Box<Config>),
     /// A lesson by its index. Its worlds (simulations) start side by side.
     Lesson(usize),
-    /// The text of a link. The worlds of the link are computed up to their last steps. Settings that the user changed
-    /// in the window are not used.
+    /// The text of a link. The simulations of the link are computed up to their last steps. Settings that the user
+    /// changed in the window are not used.
     Link(String),
     /// A saved run, to be continued.
     Run(Box<SavedState>),

@@ -33,7 +33,7 @@ const BESIDE: [LineStyle; 2] =
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
     pub worlds: Vec<WorldCurve>,
-    /// The worlds of the earlier run, drawn behind the present worlds.
+    /// The simulations of the earlier run, drawn behind the present simulations.
     pub ghosts: Vec<WorldCurve>,
     pub quantities: Vec<&'static Quantity<Observables>>,
     pub chosen: ChosenPlot,
@@ -43,7 +43,7 @@ pub(crate) struct PlotData {
     pub until_secs: f64,
 }
 
-/// Draws plots for a picture. If there are several worlds, a key of their colours is above the plots.
+/// Draws plots for a picture. If there are several simulations, a key of their colours is above the plots.
 pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     if data.worlds.len() > 1 {
         ui.horizontal_wrapped(|ui| {
@@ -158,8 +158,8 @@ fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
     points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
 }
 
-/// Returns the lines of a world's other initial states up to the displayed moment: a thin line per run, and their mean
-/// as a dashed line.
+/// Returns the lines of a simulation's other initial states up to the displayed moment: a thin line per run, and their
+/// mean as a dashed line.
 fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
         return Vec::new();
@@ -233,10 +233,10 @@ fn scaled(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
 
-/// Curves of one world.
+/// Curves of one simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldCurve {
-    /// Title that distinguishes the world from the others.
+    /// Title that distinguishes the simulation from the others.
     pub name: String,
     pub colour: Color32,
     pub curve: Curve,

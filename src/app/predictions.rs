@@ -39,7 +39,7 @@ const SQUEEZED: f64 = 0.01;
 /// Simulated time after a change of Δt for which the pile is watched, s.
 const WATCHED_SECS: f64 = 0.3;
 
-/// Returns the last observables of all worlds, if all worlds have reached the end of the scene.
+/// Returns the last observables of all simulations, if all simulations have reached the end of the scene.
 pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let duration_secs = frame.start.as_ref()?.scene.duration_secs;
     let last = frame.worlds.iter().map(|world| world.curve.last().copied());

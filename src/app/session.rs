@@ -1,4 +1,4 @@
-//! Files of sessions (all worlds with their history and the arrangement of the window) and of saved runs.
+//! Files of sessions (all simulations with their history and the arrangement of the window) and of saved runs.
 //!
 //! A session stores runs as the live history does: the initial state, some later states (keyframes), all changes of
 //! settings, and the displayed state. It therefore opens without computing. States between the keyframes are computed

@@ -248,7 +248,7 @@ impl AppState {
         }
     }
 
-    /// Saves the displayed state of the selected world.
+    /// Saves the displayed state of the selected simulation.
     fn save_state(&mut self, context: &Context) {
         let run = self.run.take(self.run.selected);
         self.exports.write(context, &self.preferences.folder, vec![run], |folder, _, runs| {
@@ -256,7 +256,7 @@ impl AppState {
         });
     }
 
-    /// Saves all worlds with their history, and the arrangement of the window.
+    /// Saves all simulations with their history, and the arrangement of the window.
     pub(super) fn save_session(&mut self, context: &Context) {
         if self.run.frame.worlds.is_empty() {
             return;
@@ -278,7 +278,7 @@ impl AppState {
         });
     }
 
-    /// Copies a link that reproduces the displayed state of all worlds.
+    /// Copies a link that reproduces the displayed state of all simulations.
     pub fn copy_link(&mut self, context: &Context) {
         self.exports.copy_link(context, self.run.take_all());
     }

@@ -14,8 +14,8 @@ const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
 /// Settings that the solver determines; a title that names the solver omits them.
 const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
 
-/// Returns the title of a world: all settings in which any two worlds differ, with the values of this world. If the
-/// worlds do not differ, the title is Bond and Δt.
+/// Returns the title of a simulation: all settings in which any two simulations differ, with the values of this
+/// simulation. If the simulations do not differ, the title is Bond and Δt.
 pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     let Some(&Controls { settings, .. }) = worlds.get(index) else {
         return String::new();
@@ -44,8 +44,8 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     all.join(", ")
 }
 
-/// Returns the caption of a world in a picture: its number if there are several worlds, its title, Bond, Δt and the
-/// simulated time.
+/// Returns the caption of a simulation in a picture: its number if there are several simulations, its title, Bond, Δt
+/// and the simulated time.
 pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> String {
     let Some(world) = worlds.get(index) else { return String::new() };
     let mut text = title_among(worlds, index);

@@ -1,5 +1,5 @@
 //! The run that the window shows: the live run, its newest frame, the settings that the controls show, and the selected
-//! world.
+//! simulation.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -17,9 +17,9 @@ use crate::sim::Settings;
 /// A grain of one of the worlds (simulations side by side).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GrainRef {
-    /// Index of the world.
+    /// Index of the simulation.
     pub world: usize,
-    /// Index of the grain in its world.
+    /// Index of the grain in its simulation.
     pub grain: usize,
 }
 
@@ -29,12 +29,12 @@ pub struct WatchedRun {
     pub live: Live,
     /// Newest frame of the solver's thread.
     pub frame: LiveFrame,
-    /// Settings that the controls show, one entry per world. While the solver's thread has not yet handled a change,
-    /// they are newer than the settings in the frame.
+    /// Settings that the controls show, one entry per simulation. While the solver's thread has not yet handled a
+    /// change, they are newer than the settings in the frame.
     pub(crate) wanted: Vec<Controls>,
-    /// Index of a world and its new settings while the user drags a main slider.
+    /// Index of a simulation and its new settings while the user drags a main slider.
     pub(crate) draft: Option<(usize, Settings)>,
-    /// Index of the world that the controls change.
+    /// Index of the simulation that the controls change.
     pub(crate) selected: usize,
     /// The grain whose contacts are listed.
     pub pinned: Option<GrainRef>,
@@ -81,18 +81,18 @@ impl WatchedRun {
         world.is_some_and(|world| grain < world.snapshot.grains.len())
     }
 
-    /// The world that the controls change; `None` before the first load.
+    /// The simulation that the controls change; `None` before the first load.
     pub fn world(&self) -> Option<&WorldFrame> {
         self.frame.worlds.get(self.selected)
     }
 
-    /// Settings that the controls show for the selected world.
+    /// Settings that the controls show for the selected simulation.
     pub(crate) fn wanted_settings(&self) -> Option<Settings> {
         self.wanted.get(self.selected).map(|wanted| wanted.settings)
     }
 
-    /// Settings that the controls show for the selected world, and the initial state, whose settings are the defaults
-    /// of the controls.
+    /// Settings that the controls show for the selected simulation, and the initial state, whose settings are the
+    /// defaults of the controls.
     pub(crate) fn wanted_and_start(&self) -> Option<(Settings, Arc<LiveStart>)> {
         Some((self.wanted_settings()?, self.frame.start.clone()?))
     }
@@ -107,12 +107,12 @@ impl WatchedRun {
         self.frame.start.as_ref().is_some_and(|start| start.slumps)
     }
 
-    /// True if the window compares several worlds.
+    /// True if the window compares several simulations.
     pub(crate) fn compares(&self) -> bool {
         self.frame.worlds.len() > 1
     }
 
-    /// True if there are worlds and no initial state is being loaded.
+    /// True if there are simulations and no initial state is being loaded.
     pub(crate) fn is_ready(&self) -> bool {
         !self.frame.worlds.is_empty() && self.frame.loading.is_none()
     }
@@ -132,12 +132,12 @@ impl WatchedRun {
         title_among(&self.wanted, world)
     }
 
-    /// Returns the title of a world with its number in front.
+    /// Returns the title of a simulation with its number in front.
     pub(crate) fn numbered_title(&self, world: usize) -> String {
         format!("{}: {}", world + 1, self.title(world))
     }
 
-    /// Returns the slump of a world as text; empty if the scene is not a heap.
+    /// Returns the slump of a simulation as text; empty if the scene is not a heap.
     pub(crate) fn slump_text(&self, world: usize) -> String {
         let world = self.frame.worlds.get(world).filter(|_| self.slumps());
         world
@@ -153,7 +153,8 @@ impl WatchedRun {
     }
 
     /// Returns the last earlier run for comparison with the present run (the "ghost"), if the settings of at most one
-    /// world differ. The ghost of a run with other worlds is not shown, because its numbers could not be compared.
+    /// simulation differ. The ghost of a run with other simulations is not shown, because its numbers could not be
+    /// compared.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         let (last, worlds) = (self.undo_target()?, &self.frame.worlds);
         let others = last.worlds.iter().zip(worlds.iter());
@@ -188,7 +189,7 @@ impl WatchedRun {
         self.frame.past.iter().find(|run| run.is_undone)
     }
 
-    /// Changes the settings of a world.
+    /// Changes the settings of a simulation.
     pub fn change(&mut self, world: usize, settings: Settings) {
         if let Some(wanted) = self.wanted.get_mut(world) {
             wanted.settings = settings;
@@ -224,8 +225,8 @@ impl WatchedRun {
         self.live.send(Command::Seek(time_secs.max(0.0)));
     }
 
-    /// Requests a copy of a world's history from the solver's thread, which sends it between two steps. If the world no
-    /// longer exists, the channel stays empty.
+    /// Requests a copy of a simulation's history from the solver's thread, which sends it between two steps. If the
+    /// simulation no longer exists, the channel stays empty.
     pub(crate) fn take(&mut self, world: usize) -> Receiver<TakenRun> {
         let (sender, receiver) = channel();
         let hand_on = move |start, world| {
@@ -236,7 +237,7 @@ impl WatchedRun {
         receiver
     }
 
-    /// Requests copies of the histories of all worlds from the solver's thread.
+    /// Requests copies of the histories of all simulations from the solver's thread.
     pub(crate) fn take_all(&mut self) -> Vec<Receiver<TakenRun>> {
         (0..self.frame.worlds.len()).map(|world| self.take(world)).collect()
     }

@@ -35,7 +35,7 @@ pub(super) struct Clock {
     steps: u64,
     /// Simulated time per wall-clock time, averaged over 300 ms.
     pub real_time_factor: f64,
-    /// Steps of all worlds per second of wall-clock time, 1/s, averaged over 300 ms.
+    /// Steps of all simulations per second of wall-clock time, 1/s, averaged over 300 ms.
     pub steps_per_sec: f64,
 }
 

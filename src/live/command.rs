@@ -37,12 +37,12 @@ pub enum Command {
     /// Restart from the present initial state with one world for each of these settings (usually one), side by
     /// side. The previous run is kept.
     Compare(Vec<Settings>),
-    /// Change the settings of the world with this index from its next step on.
+    /// Change the settings of the simulation with this index from its next step on.
     Change(usize, Settings),
-    /// Tie a spring to a grain of the world with this index, so that the user can drag the grain; `None` removes
+    /// Tie a spring to a grain of the simulation with this index, so that the user can drag the grain; `None` removes
     /// the spring.
     SetPull(usize, Option<Pull>),
-    /// Edit the world with this index (for example, move a grain) before its next step. Recorded steps after this
+    /// Edit the simulation with this index (for example, move a grain) before its next step. Recorded steps after this
     /// moment are kept as a separate run.
     Edit(usize, Edit),
     /// Start time: show the recorded steps, and compute more steps at their end. If the settings differ from the
@@ -50,8 +50,8 @@ pub enum Command {
     Play,
     /// Stop time.
     Pause,
-    /// Take one step, and pause. The world with the largest time step takes one step; the other worlds take steps
-    /// until they have reached the same time.
+    /// Take one step, and pause. The simulation with the largest time step takes one step; the other simulations take
+    /// steps until they have reached the same time.
     Step,
     /// Go back to the initial state with the present settings, and pause. The previous run is kept in
     /// [`LiveFrame::past`](super::LiveFrame::past).
@@ -63,10 +63,10 @@ pub enum Command {
     Name(Option<u64>, String),
     /// Go to the recorded moment nearest to this simulated time, s, and pause.
     Seek(f64),
-    /// Pass the history of the world with this index to the callback.
+    /// Pass the history of the simulation with this index to the callback.
     #[serde(skip)]
     Take(usize, Taker),
-    /// Pass the initial state to the callback, with the history of all worlds and of the earlier runs.
+    /// Pass the initial state to the callback, with the history of all simulations and of the earlier runs.
     #[serde(skip)]
     TakeAll(StartTaker),
     /// Change the speed of playing.

@@ -425,7 +425,7 @@ impl Engine {
         }
     }
 
-    /// Puts one world for each of these settings at the initial state.
+    /// Puts one simulation for each of these settings at the initial state.
     fn restart(&mut self, all: &[Settings]) {
         if let Some(start) = &self.start
             && !all.is_empty()

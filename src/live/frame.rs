@@ -47,7 +47,7 @@ pub struct LiveFrame {
     pub refusal: Option<Arc<str>>,
     /// Simulated time per wall-clock time, averaged over 300 ms.
     pub real_time_factor: f64,
-    /// Steps of all worlds per second of wall-clock time, 1/s, averaged over 300 ms.
+    /// Steps of all simulations per second of wall-clock time, 1/s, averaged over 300 ms.
     pub steps_per_sec: f64,
 }
 
@@ -63,8 +63,8 @@ pub struct WorldFrame {
     pub gravity: Option<DVec2>,
     /// Observables of all recorded steps, for plots.
     pub curve: Curve,
-    /// True if all recorded steps have the settings of the next step, and the user neither edited the world nor pulled
-    /// a grain.
+    /// True if all recorded steps have the settings of the next step, and the user neither edited the simulation nor
+    /// pulled a grain.
     pub is_even: bool,
     /// Simulated time at the beginning of the record, s.
     pub recorded_from_secs: f64,
@@ -102,17 +102,17 @@ pub struct WorldAlarm {
 }
 
 impl LiveFrame {
-    /// Simulated time of the first world, s.
+    /// Simulated time of the first simulation, s.
     pub fn time_secs(&self) -> f64 {
         self.worlds.first().map_or(0.0, |world| world.snapshot.observables.time_secs)
     }
 
-    /// Simulated time of the last recorded step of any world, s.
+    /// Simulated time of the last recorded step of any simulation, s.
     pub fn recorded_secs(&self) -> f64 {
         self.worlds.iter().map(|world| world.recorded_secs).fold(0.0, f64::max)
     }
 
-    /// True if no world has taken a step since the initial state.
+    /// True if no simulation has taken a step since the initial state.
     pub fn at_start(&self) -> bool {
         self.worlds.iter().all(|world| world.snapshot.observables.step == 0)
     }
@@ -124,8 +124,8 @@ impl LiveFrame {
 }
 
 impl WorldFrame {
-    /// Returns the present moment of a world, or the stored moment if one is given. Before the first step, the frame
-    /// has the surroundings `held`, which include the walls that are removed when time begins.
+    /// Returns the present moment of a simulation, or the stored moment if one is given. Before the first step, the
+    /// frame has the surroundings `held`, which include the walls that are removed when time begins.
     pub(super) fn of(
         world: &WorldHistory,
         stored: Option<&StoredMoment>,
@@ -169,8 +169,8 @@ impl WorldFrame {
     }
 }
 
-/// Returns the warnings about a world, except the warning that the state is no longer finite, which is reported as the
-/// failure. Each advises on the settings of the step in which it was raised.
+/// Returns the warnings about a simulation, except the warning that the state is no longer finite, which is reported as
+/// the failure. Each advises on the settings of the step in which it was raised.
 fn alarms(world: &WorldHistory) -> Vec<WorldAlarm> {
     let simulation = &world.simulation;
     let alarms = simulation.alarms().iter().copied().chain(simulation.alarm_on_placed());

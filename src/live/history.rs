@@ -28,10 +28,10 @@ const PAST_KEYFRAME_BYTES: usize = 1 << 20;
 /// earlier runs. A row (the observables of one step) takes about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
-/// Time after which a tick is interrupted to handle commands. A tick is one step of the world with the longest time
-/// step; a world with a far shorter time step takes thousands of steps in a tick.
+/// Time after which a tick is interrupted to handle commands. A tick is one step of the simulation with the longest
+/// time step; a simulation with a far shorter time step takes thousands of steps in a tick.
 const SLICE: Duration = Duration::from_millis(50);
-/// Number of steps that each world takes between two reports of progress.
+/// Number of steps that each simulation takes between two reports of progress.
 const STEPS_AT_ONCE: u64 = 8;
 
 /// Worlds (simulations) side by side at the same simulated time. The world with the largest time step leads. Each other
@@ -46,12 +46,12 @@ pub(super) struct LiveRun {
     /// Number by which the window selects an earlier run.
     #[serde(skip)]
     number: u64,
-    /// Simulated time that all worlds must reach to finish a tick ([`Self::tick`]), s.
+    /// Simulated time that all simulations must reach to finish a tick ([`Self::tick`]), s.
     #[serde(skip)]
     goal_secs: Option<f64>,
 }
 
-/// Applies `act` to all worlds, in parallel if there are several. Returns true if all calls return true.
+/// Applies `act` to all simulations, in parallel if there are several. Returns true if all calls return true.
 fn each(
     worlds: &mut [WorldHistory],
     act: impl Fn(&mut WorldHistory) -> bool + Send + Sync,
@@ -87,7 +87,7 @@ impl LiveRun {
         self.worlds.iter().any(|world| world.failure.is_some())
     }
 
-    /// Limits the keyframes of all worlds together to about `budget_bytes` bytes, and their stored moments to
+    /// Limits the keyframes of all simulations together to about `budget_bytes` bytes, and their stored moments to
     /// [`STORED_BYTES`].
     fn keep_within(&mut self, budget_bytes: usize) {
         let count = self.worlds.len().max(1);
@@ -111,12 +111,12 @@ impl LiveRun {
         self.leader().map_or(0.0, WorldHistory::time_step_secs)
     }
 
-    /// Simulated time of the last recorded step of the world with the largest time step, s.
+    /// Simulated time of the last recorded step of the simulation with the largest time step, s.
     pub(super) fn recorded_secs(&self) -> f64 {
         self.leader().map_or(0.0, |world| world.record.end_secs())
     }
 
-    /// Approximate memory of the keyframes of all worlds, bytes.
+    /// Approximate memory of the keyframes of all simulations, bytes.
     fn bytes(&self) -> usize {
         self.worlds.iter().map(|world| world.record.bytes()).sum()
     }
@@ -125,9 +125,9 @@ impl LiveRun {
         self.worlds.iter().map(WorldHistory::steps).sum()
     }
 
-    /// Takes one step of the world with the largest time step, and the steps that bring the other worlds to the same
-    /// time. If this takes longer than [`SLICE`], the next tick continues. Returns the number of steps of all worlds,
-    /// and true if all steps succeeded.
+    /// Takes one step of the simulation with the largest time step, and the steps that bring the other simulations to
+    /// the same time. If this takes longer than [`SLICE`], the next tick continues. Returns the number of steps of all
+    /// simulations, and true if all steps succeeded.
     pub(super) fn tick(&mut self) -> (u64, bool) {
         let steps_before = self.steps();
         let goal_secs = self.goal_secs.take();
@@ -142,7 +142,7 @@ impl LiveRun {
         (self.steps() - steps_before, all_well)
     }
 
-    /// True while some worlds have not yet finished a tick ([`Self::tick`]).
+    /// True while some simulations have not yet finished a tick ([`Self::tick`]).
     pub(super) fn is_on_its_way(&self) -> bool {
         self.goal_secs.is_some()
     }
@@ -152,7 +152,7 @@ impl LiveRun {
         self.worlds.iter_mut().for_each(|world| world.seek(time_secs));
     }
 
-    /// Takes one step of a seek in each world. Returns true if all worlds have reached the requested time.
+    /// Takes one step of a seek in each simulation. Returns true if all simulations have reached the requested time.
     pub(super) fn advance_seek(&mut self) -> bool {
         each(&mut self.worlds, WorldHistory::advance_seek)
     }
@@ -218,8 +218,8 @@ impl PastRun {
     }
 }
 
-/// All data that a live run has computed: the present worlds with their records, and the earlier runs. A run can be
-/// continued from its history, and each of its steps can be computed again from the recorded changes.
+/// All data that a live run has computed: the present simulations with their records, and the earlier runs. A run can
+/// be continued from its history, and each of its steps can be computed again from the recorded changes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunHistory {
@@ -251,7 +251,7 @@ pub struct WorldPlan {
 }
 
 impl RunHistory {
-    /// Returns a history without worlds, whose keyframes may take `recording_bytes` bytes.
+    /// Returns a history without simulations, whose keyframes may take `recording_bytes` bytes.
     pub(super) fn new(recording_bytes: usize) -> Self {
         Self { recording_bytes, ..Self::default() }
     }
@@ -276,7 +276,7 @@ impl RunHistory {
         self.tell();
     }
 
-    /// Starts one world from `start` for each of the settings `all`. The run so far is kept as an earlier run.
+    /// Starts one simulation from `start` for each of the settings `all`. The run so far is kept as an earlier run.
     pub(super) fn restart(&mut self, start: &Simulation, tally: Tally, all: &[Settings]) {
         let world =
             |settings: &Settings| WorldHistory::new(start, tally, settings, self.recording_bytes);
@@ -322,8 +322,8 @@ impl RunHistory {
         }
     }
 
-    /// Applies a user's edit (for example, a moved grain) to a world. If this branches off from the record, the run is
-    /// kept.
+    /// Applies a user's edit (for example, a moved grain) to a simulation. If this branches off from the record, the
+    /// run is kept.
     pub(super) fn edit(&mut self, world: usize, edit: Edit) -> Result<()> {
         let Some(edited) = self.present.worlds.get(world) else { return Ok(()) };
         let branches = edited.record.is_before_end(&edited.simulation);
@@ -340,8 +340,8 @@ impl RunHistory {
         self.present.number = 0;
     }
 
-    /// Stored states of the newest earlier run, one per world, at the last stored moment up to the simulated time
-    /// `secs`, s. The list is empty if a world has no such moment.
+    /// Stored states of the newest earlier run, one per simulation, at the last stored moment up to the simulated time
+    /// `secs`, s. The list is empty if a simulation has no such moment.
     pub(super) fn ghosts(&self, secs: f64) -> Vec<Arc<Snapshot>> {
         let worlds = self.past.last().map_or(&[][..], |run| &run.worlds);
         let snapshots =
@@ -431,8 +431,8 @@ impl RunHistory {
         }
     }
 
-    /// Computes the history of several worlds in parallel. All start from `start`, after steps with the sums `tally`.
-    /// `tell` receives the progress and returns false to cancel the computation.
+    /// Computes the history of several simulations in parallel. All start from `start`, after steps with the sums
+    /// `tally`. `tell` receives the progress and returns false to cancel the computation.
     ///
     /// # Errors
     /// If a setting is refused, or if the computation is cancelled.
@@ -479,7 +479,7 @@ impl RunHistory {
         is_sound(&self.present) && self.past.iter().chain(&self.undone).all(is_sound)
     }
 
-    /// The reason why one of the present worlds cannot continue, if one cannot.
+    /// The reason why one of the present simulations cannot continue, if one cannot.
     pub fn failure(&self) -> Option<&str> {
         self.present.worlds.iter().find_map(|world| world.failure.as_deref())
     }

@@ -11,7 +11,7 @@ pub struct LiveOptions {
     pub gives_up: Box<dyn Fn() -> bool + Send>,
     /// Shortest time between two frames of a running simulation.
     pub frame_interval: Duration,
-    /// Memory for keyframes (copies of the whole state) of all worlds together, bytes.
+    /// Memory for keyframes (copies of the whole state) of all simulations together, bytes.
     pub recording_bytes: usize,
 }
 

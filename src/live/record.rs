@@ -226,7 +226,7 @@ impl WorldRecord {
         self.end_step > self.start().observables().step
     }
 
-    /// True if all recorded steps have these settings, and the user neither edited the world nor pulled a grain.
+    /// True if all recorded steps have these settings, and the user neither edited the simulation nor pulled a grain.
     pub(super) fn is_all_with(&self, settings: &Settings) -> bool {
         let all_along = Controls { settings: *settings, pull: None };
         self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)

@@ -85,7 +85,7 @@ impl FrameChange {
     }
 }
 
-/// A callback that waits for the history of one world or of the whole run.
+/// A callback that waits for the history of one simulation or of the whole run.
 enum Waiting {
     World(Taker),
     All(StartTaker),

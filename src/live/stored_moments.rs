@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::sim::{Simulation, Snapshot, Tally};
 use crate::world::Gravity;
 
-/// Memory for the stored moments of all worlds together, bytes. If it is full, every second moment is dropped. It is
-/// enough for about 2,000 moments of 138 grains, or 30 moments of 10,000 grains.
+/// Memory for the stored moments of all simulations together, bytes. If it is full, every second moment is dropped. It
+/// is enough for about 2,000 moments of 138 grains, or 30 moments of 10,000 grains.
 pub(super) const STORED_BYTES: usize = 64 << 20;
 
 /// The state after one step, in the form in which the window shows it.

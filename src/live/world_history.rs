@@ -40,7 +40,7 @@ pub struct WorldHistory {
 }
 
 impl WorldHistory {
-    /// Returns a world at the state `start` with these settings. `tally` contains the sums over the steps before
+    /// Returns a simulation at the state `start` with these settings. `tally` contains the sums over the steps before
     /// `start`, and `budget_bytes` limits the keyframes.
     pub(super) fn new(
         start: &Simulation,

@@ -92,7 +92,7 @@ impl Ensemble {
         self.pool.as_ref().map_or(0, WorkerPool::threads)
     }
 
-    /// Computes ensembles for the worlds of the newest frame. If `is_wanted` is false, stops all threads.
+    /// Computes ensembles for the simulations of the newest frame. If `is_wanted` is false, stops all threads.
     pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&self.opened) != address(&frame.start) {
@@ -195,7 +195,7 @@ impl Ensemble {
         Some(format!("{}: {}", change_text(before, after), effect(&paired, self.piles.len())?))
     }
 
-    /// Returns a text on the ensemble of a world: its explanation and its seeds.
+    /// Returns a text on the ensemble of a simulation: its explanation and its seeds.
     pub(crate) fn about(&self, world: usize) -> String {
         let Some(summary) = self.summary(world) else { return RULE.into() };
         let EnsembleSummary { seeds, settling, failed, .. } = summary;
@@ -210,8 +210,8 @@ impl Ensemble {
         text
     }
 
-    /// Returns the mean result of a world's ensemble at the displayed moment, as text. `None` if the world has no
-    /// ensemble.
+    /// Returns the mean result of a simulation's ensemble at the displayed moment, as text. `None` if the simulation
+    /// has no ensemble.
     pub(crate) fn said(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         let row = frame.worlds.get(world)?.snapshot.observables;
         Some(said(&self.summary(world)?, row.time_secs))
@@ -230,7 +230,7 @@ impl Ensemble {
         Some((mean, half, band.count))
     }
 
-    /// Returns the state of a world's ensemble; `None` if the world has no ensemble.
+    /// Returns the state of a simulation's ensemble; `None` if the simulation has no ensemble.
     pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         self.pool.as_ref()?.summary(world)
     }

@@ -72,7 +72,7 @@ enum JobState {
     Failed,
 }
 
-/// Results of the other initial states with the settings of one world.
+/// Results of the other initial states with the settings of one simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct EnsembleSummary {
     /// Slumps of the piles whose runs have finished.
@@ -89,10 +89,10 @@ pub(crate) type Released = (Settings, Arc<Band>);
 /// The waiting, running and finished jobs.
 #[derive(Default)]
 struct Jobs {
-    /// Settings of each visible world; `None` for a world that has no ensemble.
+    /// Settings of each visible simulation; `None` for a simulation that has no ensemble.
     worlds: Vec<Option<Settings>>,
     /// Settings of all runs that the user has started. Their jobs have lower priority than the jobs of the visible
-    /// worlds.
+    /// simulations.
     released: Vec<Settings>,
     begun: Vec<(PileJob, JobState)>,
     /// Results of finished runs, by their settings.
@@ -109,8 +109,8 @@ impl Jobs {
         !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
     }
 
-    /// Begins the next job and returns it with the grains of its pile. Jobs with the settings of visible worlds come
-    /// first, then jobs with earlier settings, the newest settings first.
+    /// Begins the next job and returns it with the grains of its pile. Jobs with the settings of visible simulations
+    /// come first, then jobs with earlier settings, the newest settings first.
     fn next(&mut self, piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         let worlds = self.worlds.iter().copied().flatten().collect();
         let earlier = self.released.iter().rev().map(|&settings| vec![settings]);
@@ -217,7 +217,7 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Computes runs with the settings of the visible worlds, then runs with the settings `released`. Discards the
+    /// Computes runs with the settings of the visible simulations, then runs with the settings `released`. Discards the
     /// results of all other settings.
     pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
         let mut jobs = self.state.lock();
@@ -242,8 +242,8 @@ impl WorkerPool {
         }
     }
 
-    /// Returns the results of the other initial states with the settings of a world; `None` if the world has no
-    /// ensemble.
+    /// Returns the results of the other initial states with the settings of a simulation; `None` if the simulation has
+    /// no ensemble.
     pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         let (jobs, piles) = (self.state.lock(), &self.state.piles);
         let settings = (*jobs.worlds.get(world)?)?;

@@ -97,7 +97,7 @@ pub(super) fn slump(
     }
 }
 
-/// Number of other initial states per world.
+/// Number of other initial states per simulation.
 const COUNT: usize = 8;
 /// Largest number of grains of a pile with an ensemble. The deposition of a larger pile takes minutes.
 const MOST_GRAINS: usize = 1_000;

@@ -5,8 +5,8 @@ use crate::app::watched_run::WatchedRun;
 use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::{AlarmKind, Settings};
 
-/// Returns the warnings about the selected world, then those about the other worlds with their titles. Within a world,
-/// warnings under the present settings come first, then earlier warnings, the newest first.
+/// Returns the warnings about the selected simulation, then those about the other simulations with their titles. Within
+/// a simulation, warnings under the present settings come first, then earlier warnings, the newest first.
 pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     let of_world = |index: usize| {
         let world = &run.frame.worlds[index];

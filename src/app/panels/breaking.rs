@@ -15,7 +15,7 @@ const RADIUS: f64 = 0.35;
 /// Largest number of grains of a scene in which rings are drawn. With more grains a ring is only a few pixels large.
 const MOST_GRAINS: usize = 3_000;
 
-/// Bonds of one world that broke recently.
+/// Bonds of one simulation that broke recently.
 #[derive(Default)]
 pub(super) struct BreakingBonds {
     /// Number of the loaded initial state (counted from 1), and simulated time (s), of the moment that was shown last.
@@ -55,7 +55,7 @@ impl BreakingBonds {
         self.pulling = touching(true).collect();
     }
 
-    /// Draws the rings of one world, which fade.
+    /// Draws the rings of one simulation, which fade.
     pub(super) fn show(&mut self, ui: &Ui, run: u64, cell: &WorldCell<'_>, colour: Color32) {
         let snapshot = &cell.frame.snapshot;
         if snapshot.grains.len() > MOST_GRAINS {

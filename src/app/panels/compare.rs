@@ -48,11 +48,11 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// A preset: worlds that the user can compare by one click.
+/// A preset: simulations that the user can compare by one click.
 struct LineUp {
     name: &'static str,
     hint: &'static str,
-    /// Returns the worlds' settings, made from the settings that [`base`] returns.
+    /// Returns the simulations' settings, made from the settings that [`base`] returns.
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
@@ -131,8 +131,8 @@ fn stepped(base: Settings, stepper: Stepper) -> Settings {
 }
 
 /// Returns the settings on which the presets are based: the settings of the scene, with the stepper and the parameters
-/// that all worlds share. Solver, remedies and touch tolerance of the previous comparison are ignored, because the user
-/// would not see them.
+/// that all simulations share. Solver, remedies and touch tolerance of the previous comparison are ignored, because the
+/// user would not see them.
 fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
     let mut base = *scene;
     let physics = Parameters::ABOUT.iter().filter(|about| about.name != "touch-tolerance");
@@ -171,7 +171,7 @@ fn line_ups(ui: &mut Ui, run: &mut WatchedRun, all: &[LineUp]) {
     });
 }
 
-/// Shows the row of one world. Returns true if the user removes the world.
+/// Shows the row of one simulation. Returns true if the user removes the simulation.
 fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {

@@ -17,12 +17,12 @@ use crate::granular::{Histogram, histograms};
 /// Least time between two counts of the histograms.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Histograms of one world at the displayed moment, or at a slightly earlier moment.
+/// Histograms of one simulation at the displayed moment, or at a slightly earlier moment.
 #[derive(Default)]
 pub(super) struct Distributions {
     /// The newest histograms.
     histograms: Vec<Histogram>,
-    /// Index of the world and number of the step of the newest count.
+    /// Index of the simulation and number of the step of the newest count.
     of: Option<(usize, u64)>,
     asked: Option<Instant>,
     coming: Option<Work<Vec<Histogram>>>,

@@ -32,7 +32,7 @@ pub struct Grabbing {
 /// A wall that the user has grabbed with the mouse.
 #[derive(Clone, Copy, Debug)]
 struct Grip {
-    /// Index of the world.
+    /// Index of the simulation.
     pub world: usize,
     /// Index of the boundary.
     pub boundary: usize,
@@ -42,7 +42,7 @@ struct Grip {
     pub sent: Option<DVec2>,
 }
 
-/// Rectangle, camera and data of a world in the window.
+/// Rectangle, camera and data of a simulation in the window.
 pub(super) struct WorldCell<'a> {
     pub index: usize,
     pub cell: Rect,
@@ -53,7 +53,7 @@ pub(super) struct WorldCell<'a> {
 }
 
 impl WorldCell<'_> {
-    /// Returns the position of the mouse if the mouse is over this world or its button was pressed here.
+    /// Returns the position of the mouse if the mouse is over this simulation or its button was pressed here.
     fn pointer(&self) -> Option<Pos2> {
         self.response.hover_pos().or_else(|| self.response.interact_pointer_pos())
     }

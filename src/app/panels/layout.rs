@@ -23,7 +23,7 @@ const PLOTS: f32 = 150.0;
 /// All panels of the window.
 #[derive(Default)]
 pub struct Panels {
-    /// The panel in the middle of the window, which shows the worlds.
+    /// The panel in the middle of the window, which shows the simulations.
     pub scene: ScenePanel,
     pub(crate) lesson_bar: LessonBar,
     pub(crate) pages: Pages,

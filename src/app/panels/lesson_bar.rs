@@ -87,7 +87,7 @@ impl LessonBar {
         });
     }
 
-    /// True if the user has changed the worlds of a lesson, so that its texts are no longer right.
+    /// True if the user has changed the simulations of a lesson, so that its texts are no longer right.
     fn has_other_worlds(&self, run: &WatchedRun, lesson: &Lesson) -> bool {
         let Some(start) = &run.frame.start else { return false };
         let worlds = (lesson.worlds)(*start.settings());
@@ -206,7 +206,7 @@ pub(super) fn light(ui: &Ui, context: &PanelContext<'_>) {
     }
 }
 
-/// Text that replaces the texts of a lesson when the user has changed its worlds.
+/// Text that replaces the texts of a lesson when the user has changed its simulations.
 const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has \
     it as it was.";
 

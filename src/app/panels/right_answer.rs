@@ -1,4 +1,4 @@
-//! The known right answer of a stability scene (a scene that is hard for solvers), and the verdict on each world.
+//! The known right answer of a stability scene (a scene that is hard for solvers), and the verdict on each simulation.
 
 use egui::{RichText, Ui};
 

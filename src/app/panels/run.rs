@@ -234,8 +234,8 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
-/// Returns the settings of an earlier run: if it has one world, the values of all main sliders and the slump; if it has
-/// several worlds, their differences.
+/// Returns the settings of an earlier run: if it has one simulation, the values of all main sliders and the slump; if
+/// it has several simulations, their differences.
 fn title(run: &PastRun, slumps: bool) -> String {
     let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
     let first = title_among(&controls, 0);

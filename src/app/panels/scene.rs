@@ -1,4 +1,4 @@
-//! The middle of the window: the worlds and the actions of the mouse, or the progress of a new pile.
+//! The middle of the window: the simulations and the actions of the mouse, or the progress of a new pile.
 
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
@@ -14,20 +14,20 @@ use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Legend, ScaleBar, Style, scene_picture};
 
-/// Height of the title of a compared world, points.
+/// Height of the title of a compared simulation, points.
 const TITLE_HEIGHT: f32 = 22.0;
 /// Largest number of grains whose outlines are drawn for the earlier run. More outlines would hide the present grains.
 const MOST_OUTLINES: usize = 3_000;
-/// Space between compared worlds, points.
+/// Space between compared simulations, points.
 const GAP: f32 = 6.0;
 
-/// The panel that shows the worlds and handles the mouse.
+/// The panel that shows the simulations and handles the mouse.
 #[derive(Default)]
 pub struct ScenePanel {
     /// The grain or wall that the user has grabbed with the mouse.
     pub mouse: Grabbing,
     pub(crate) legend: LegendCache,
-    /// Recently broken bonds, one entry per world.
+    /// Recently broken bonds, one entry per simulation.
     breaking: Vec<BreakingBonds>,
 }
 
@@ -37,7 +37,7 @@ impl ScenePanel {
         self.mouse.grabbed = self.mouse.grabbed.filter(|&grain| run.has(grain));
     }
 
-    /// Shows all worlds in the remaining space.
+    /// Shows all simulations in the remaining space.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let area = ui.available_rect_before_wrap();
         ui.allocate_rect(area, Sense::hover());
@@ -79,7 +79,7 @@ impl ScenePanel {
         }
     }
 
-    /// Shows one world with its labels and performs the actions of the mouse.
+    /// Shows one simulation with its labels and performs the actions of the mouse.
     fn world(
         &mut self,
         ui: &mut Ui,
@@ -120,7 +120,7 @@ impl ScenePanel {
     }
 }
 
-/// Returns the rectangles of `count` worlds, in rows of up to three.
+/// Returns the rectangles of `count` simulations, in rows of up to three.
 fn cells(area: Rect, count: usize) -> Vec<Rect> {
     let columns = columns(count).max(1);
     let rows = count.div_ceil(columns);
@@ -135,7 +135,7 @@ fn cells(area: Rect, count: usize) -> Vec<Rect> {
 }
 
 impl WorldCell<'_> {
-    /// Draws the same world of the earlier run at the same simulated time, and a label with its settings.
+    /// Draws the same simulation of the earlier run at the same simulated time, and a label with its settings.
     fn ghost(&self, ui: &Ui, context: &PanelContext<'_>) {
         let Some(run) = context.ghost() else { return };
         let Some(world) = run.worlds.get(self.index) else { return };
@@ -200,7 +200,7 @@ impl WorldCell<'_> {
     }
 }
 
-/// Shows a pile during its deposition instead of the worlds. Returns false if no pile is being deposited.
+/// Shows a pile during its deposition instead of the simulations. Returns false if no pile is being deposited.
 fn show_making(
     ui: &Ui,
     context: &mut PanelContext<'_>,

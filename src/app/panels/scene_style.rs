@@ -4,8 +4,8 @@ use crate::app::preferences::Preferences;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Style, Theme, automatic_range, force_reference, speed_reference};
 
-/// Returns the style that the user chose, with the theme of the window. All worlds have the same scales of colours,
-/// forces and velocities.
+/// Returns the style that the user chose, with the theme of the window. All simulations have the same scales of
+/// colours, forces and velocities.
 pub(super) fn shared_style(run: &WatchedRun, preferences: &Preferences, dark: bool) -> Style {
     let mut style = own_style(preferences, dark);
     if run.compares() {
@@ -28,7 +28,7 @@ pub(super) fn own_style(preferences: &Preferences, dark: bool) -> Style {
     Style { theme, ..preferences.style.clone() }
 }
 
-/// Returns the number of worlds in a row, if there are `count` worlds.
+/// Returns the number of simulations in a row, if there are `count` simulations.
 pub(super) fn columns(count: usize) -> usize {
     if count == 4 { 2 } else { count.min(3) }
 }

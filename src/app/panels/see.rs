@@ -207,7 +207,7 @@ pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
     }
 }
 
-/// Saves a picture of the displayed worlds, in the size that the preferences state.
+/// Saves a picture of the displayed simulations, in the size that the preferences state.
 pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) {
     if context.run.frame.worlds.is_empty() {
         return;
@@ -222,7 +222,7 @@ pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) 
     });
 }
 
-/// Saves the recorded run of all worlds as a film, within the time interval that the user chose for exports.
+/// Saves the recorded run of all simulations as a film, within the time interval that the user chose for exports.
 fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFormat, speed: f64) {
     // The scale of the colours is not fixed here, because it must fit all pictures of the film.
     let style = own_style(context.preferences, gui.theme() == egui::Theme::Dark);
@@ -246,7 +246,7 @@ fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFo
     context.exports.film = Some((format, work));
 }
 
-/// Returns a picture of the displayed worlds. There must be at least one world.
+/// Returns a picture of the displayed simulations. There must be at least one simulation.
 fn scene_picture(
     context: &PanelContext<'_>,
     style: Style,

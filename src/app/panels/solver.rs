@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     readings(ui, run);
 }
 
-/// Shows the settings that few users need to change, and applies changes to the selected world.
+/// Shows the settings that few users need to change, and applies changes to the selected simulation.
 pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
     let Some((before, start)) = run.wanted_and_start() else { return };

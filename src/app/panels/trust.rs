@@ -283,12 +283,12 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// Returns a warning if the time step of a world is too long.
+/// Returns a warning if the time step of a simulation is too long.
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
 
-/// Returns sentences on how well the steps of a world were solved.
+/// Returns sentences on how well the steps of a simulation were solved.
 fn solved(world: &WorldFrame) -> Vec<String> {
     let last = &world.snapshot.observables;
     if !world.controls.settings.stepper.uses_method() {
