@@ -40,7 +40,7 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     type Normal<T: Lanes>: Copy + Send + Sync + Debug + 'static;
     /// Number of space dimensions.
     const AXES: usize;
-    /// True if contacts carry tangential impulses.
+    /// True if contacts transmit tangential impulses.
     const FRICTION: bool;
     /// True if grains turn.
     const ROTATION: bool;

@@ -143,8 +143,8 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Computes W and q of a problem. On a line, which has no tangent, each contact has a tangential row with
-    /// W_tt = W_nn and no coupling to other rows.
+    /// Computes W and q of a problem. On a line, which has no tangent, the tangential rows of W have W_tt = W_nn on the
+    /// diagonal and no other entries.
     ///
     /// # Errors
     /// An error names the body with the most contacts, if W would have too many entries.

@@ -278,7 +278,8 @@ pub(crate) fn projected<S: ContactSystem>(
     [normal, law::coulomb(tangential, system.friction_bound(contact, normal))]
 }
 
-/// Returns Σ a·b, computed as four sums that the processor can form at the same time.
+/// Returns the scalar product Σ a·b of two scaled vectors, computed as four sums that the processor can form at the
+/// same time.
 pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     let mut sums = [0.0; 4];
     let (mut pairs_of_a, mut pairs_of_b) = (a.chunks_exact(2), b.chunks_exact(2));

@@ -22,7 +22,8 @@ const WEDGING_FRICTION: f64 = 2.0;
 /// counts as wedged. Levers and arches multiply the impulse only a few times.
 const WEDGED: f64 = 3.0;
 
-/// Returns true if friction may have wedged the impulses that a solve would start from.
+/// Returns true if friction may have wedged bodies between each other, so that the initial impulses of a solve are much
+/// larger than the momenta of the bodies require.
 pub(super) fn is_wedged<M: Model>(problem: &StepProblem<M>) -> bool {
     let model = problem.friction.model;
     if !M::FRICTION || !matches!(model, FrictionModel::Coulomb | FrictionModel::Tresca) {

@@ -14,9 +14,9 @@
 //!   (G. de Saxcé and Z.-Q. Feng, 1998; V. Acary and others, 2011). The lagged number is s: for the first solve from
 //!   the velocities at the beginning of the step, for a further solve from the velocities of the solve before.
 //!
-//! In each model the impulses of a contact are the point of a convex set that is nearest to (σ − w − s, λ_t − v
-//! m_t/m_n) in the metric diag(1, m_n/m_t). This projection is the Gauss–Seidel update of a contact of solid discs,
-//! whose Delassus block is diagonal, and it defines the natural map.
+//! In each model the impulses of a contact are the point of a convex set that is nearest to
+//! (σ − w − s, λ_t − v m_t/m_n) in the metric diag(1, m_n/m_t). This projection is the Gauss–Seidel update of a contact
+//! of solid discs, whose Delassus block is diagonal, and it defines the natural map.
 
 use super::{Row, StepProblem};
 use crate::contact::{ContactLaw, Lanes, law};

@@ -326,8 +326,8 @@ mod tests {
         (rows, pairs.colour_ends)
     }
 
-    /// Returns the contacts of a disc with more neighbours than there are colours, and the contacts between neighbours
-    /// that follow each other.
+    /// Returns the contacts of a disc with more neighbours than there are colours, and contacts between these
+    /// neighbours.
     fn hub() -> Vec<Contact> {
         let contact = |grain, other| Contact { grain, other, normal: DVec2::Y, gap: -1e-9 };
         let spokes = (1..138).map(|other| contact(0, other));

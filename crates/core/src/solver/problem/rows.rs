@@ -40,7 +40,7 @@ pub struct Row<M: Model> {
     pub i: u32,
     /// Index of grain j; not used in a contact with a fixed body.
     pub j: u32,
-    /// Unit normal n, from j to i.
+    /// Unit normal n of the contact, from body j (or the fixed body) to grain i.
     pub normal: M::Normal<f64>,
     /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 if the approach is slower than the threshold
     /// of restitution, minus the speed of an approaching wall (`problem::walls`).

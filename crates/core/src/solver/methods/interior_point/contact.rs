@@ -122,7 +122,8 @@ pub(super) struct ContactNumbers {
 }
 
 impl ContactNumbers {
-    /// Returns the compliance of a contact of free bodies along a slack of the cone, in which p changes by (1/κ, ±1)/2.
+    /// Returns the compliance of a contact of free bodies along a slack of the cone, the direction (1/κ, ±1)/2 of the
+    /// impulses.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }

@@ -129,7 +129,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         push_all(problem, &graph.elimination, impulses, momenta);
     }
 
-    /// Sets the impulses of the rows, and the velocities of the bodies that follow from them.
+    /// Sets the impulses of the rows to `impulse` of each contact, and recomputes the velocities of the bodies.
     fn take_near(&mut self, impulse: impl Fn(&ProximalContact) -> [f64; 2]) {
         let Self { problem, workspace, .. } = self;
         problem.write_impulses(workspace.near.iter().map(impulse));

@@ -34,7 +34,7 @@ const WORTH_THREADS: usize = 4096;
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockMemory {
     layout: TileLayout,
-    /// Change of the impulses of each tile in a sweep.
+    /// Change of the impulses of each tile's contacts in a sweep.
     changes: Vec<ImpulseChange>,
     /// For each tile, a sum over its contacts: of squared errors or of squared impulses, (N·s)².
     sums: Vec<f64>,
@@ -230,9 +230,9 @@ const NOBODY: u32 = u32::MAX;
 /// A tile: contacts whose grains are in no other tile, so that one thread can solve them.
 #[derive(Clone, Copy, Debug, Default)]
 struct ContactTile {
-    /// Number of blocks of contacts in the tile.
+    /// Number of blocks (of four contacts each) in the tile.
     blocks: usize,
-    /// Number of blocks of contacts with fixed bodies; these blocks come first.
+    /// Number of the tile's blocks whose contacts are with fixed bodies; these blocks come first.
     fixed: usize,
     /// Number of slots, one per grain of the tile and one for idle lanes.
     slots: usize,

@@ -104,7 +104,7 @@ fn where_nothing_would_move_the_residual_is_none_or_infinite() {
 fn same_bits_at_all_levels<M: Model>(cone: FrictionCone) {
     let mut seen = [0; LANES];
     for seed in 0..60 {
-        // A small number of contacts, so that every number of rows that do not fill a block occurs in some colour.
+        // The number of contacts is small, so that some colours end with a block of only one, two or three contacts.
         let start = problem::<M>(seed, 40, 1 + 3 * seed as u32, cone);
         let settings = sweeps(1 + seed as u32 % 30);
         let mut expected = start.clone();
