@@ -42,7 +42,7 @@ fn references(name: &str) -> Vec<Reference> {
     lines(name).into_iter().map(reference).collect()
 }
 
-/// Takes the same step in Slump. It is solved as precisely as Gauss–Seidel can.
+/// Takes the step of the reference data in Slump, solved as precisely as Gauss–Seidel can solve it.
 fn step(references: &[Reference], bond: f64, time_step_secs: f64) -> Simulation {
     let grains = references.iter().map(|reference| reference.before.clone()).collect();
     let scene = pile_of(grains, NewPile::default().box_width_in_diameters).expect("a pile");

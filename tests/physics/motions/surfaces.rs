@@ -210,7 +210,7 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     }
 }
 
-/// No grain is lost if a wall rises under it. A grain is lost if a wall jumps past it within one step.
+/// A grain on a rising wall is not lost. A grain is lost if a wall jumps past the grain within one step.
 #[test]
 fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     let floor = Boundary::Segment { from: DVec2::new(-1.0, 0.0), to: DVec2::new(1.0, 0.0) };
