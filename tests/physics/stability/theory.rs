@@ -294,8 +294,8 @@ fn a_blow_on_what_slides_takes_speed_by_impulse_balance() {
     assert!(taken > 0.1 * before && taken < 0.9 * before, "it is seen, and they go on sliding");
     let ways = [
         (Method::Newton, FrictionModel::Coulomb, 1e-8),
-        // With bounded friction, fifty sweeps estimate the pressing force, so the final speed is wrong by up to 1 % of the
-        // lost speed. Forces of the previous step would be useless, because they do not include the blow.
+        // With bounded friction, fifty sweeps estimate the pressing force, so the final speed is wrong by up to 1 % of
+        // the lost speed. Forces of the previous step would not help, because they do not include the blow.
         (Method::InteriorPoint, FrictionModel::Tresca, 0.01 * taken),
         (Method::Nsgs, FrictionModel::Tresca, 0.01 * taken),
     ];
