@@ -32,7 +32,8 @@ use crate::world::World;
 /// The mechanics that a step computes: axes, friction, rotation and rolling. All of this is fixed at compile time, so a
 /// smaller model has no branches for the mechanics that it leaves out.
 ///
-/// Cohesion and the friction cone are not part of the model: in shifted impulses they are numbers (`contact::law`).
+/// Cohesion and the friction cone are not part of the model, because they only change numbers of the contact law
+/// (`contact::law`).
 pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// The velocity of a body as a sweep stores it; with several SIMD lanes, one body per lane.
     type Body<T: Lanes>: Copy + Send + Sync + Debug + 'static;

@@ -19,7 +19,7 @@
 //!
 //! 1. the impulses are projected on the law, and the velocities are computed from them;
 //! 2. a few Gauss–Seidel sweeps correct wrong predictions;
-//! 3. after the first factorisations, the contacts with most of the residual are also solved separately
+//! 3. after the first factorisations, the contacts that contribute most to the residual are also solved separately
 //!    (`nonlinear_elimination`).
 //!
 //! The unknown is the *change* of the velocities, and the load is the change of the impulses at the present velocities.

@@ -47,8 +47,8 @@ use crate::world::{FrictionCone, World};
 
 /// The contact problem of one step. The memory is reused for the next step.
 ///
-/// Code outside this crate can read a problem. Only the methods of this crate change its impulses; a method of your own
-/// changes them through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
+/// Code outside this crate can read a problem. Only methods change its impulses: the methods of this crate, or a method
+/// of your own through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
 #[derive(Clone, Debug, Default)]
 pub struct StepProblem<M: Model> {
     /// The grains, with three velocities each: before the step, after the step without contacts, and with the rows'

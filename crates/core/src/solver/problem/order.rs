@@ -11,7 +11,8 @@ use crate::contact::{Contact, Numbering};
 use crate::solver::method::Ordering;
 use crate::world::World;
 
-/// Groups of rows (contacts) that can be solved at the same time. The rows are of one kind and sorted by tiles and
+/// Groups of rows (contacts) that can be solved at the same time. All rows are of one kind (with fixed bodies, or
+/// between grains) and are sorted by tiles and colours.
 /// colours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {

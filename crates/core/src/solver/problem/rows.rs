@@ -72,7 +72,7 @@ pub struct FixedRow<M: Model> {
 pub struct PairRow<M: Model> {
     /// The data that all contacts have.
     pub row: Row<M>,
-    /// Mass ratio g_i = m_ij/m_i: the fraction of the reduced impulse that changes the velocity of grain i.
+    /// Mass ratio g_i = m_ij/m_i. An impulse P changes the velocity of grain i by g_i P/m_ij.
     pub share: f64,
 }
 

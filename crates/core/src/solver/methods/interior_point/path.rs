@@ -23,7 +23,7 @@ const AIMS: [f64; 2] = [1e-6, 1.0];
 const OFF_BORDER: f64 = 0.999;
 /// Largest second-order product of a predictor step, relative to the mean product of slacks and multipliers.
 const MOST_SECOND_ORDER: f64 = 1e3;
-/// Maximum number of further corrections of a step. Only steps shorter than [`LONG_ENOUGH`] are corrected.
+/// Maximum number of corrections of a step after its corrector. Only steps shorter than [`LONG_ENOUGH`] are corrected.
 const CORRECTIONS: u32 = 3;
 const LONG_ENOUGH: f64 = 0.98;
 /// Minimum and maximum product of slack and multiplier, relative to the target, outside which a product is corrected.

@@ -26,8 +26,8 @@ const LARGEST_IMPULSE: f64 = 1e7;
 const SWEEPS_LAST: u32 = 2;
 
 /// Product of slack and multiplier at the first start, divided by the mean square of the change that the natural map
-/// would make to the impulses. If it were smaller, contacts that change their state would be freed slowly; if it were
-/// larger, a warm start would be lost.
+/// would make to the impulses. If it were smaller, contacts would change between open, stick and slip only slowly; if
+/// it were larger, a warm start would be lost.
 const CENTRE: f64 = 1e3;
 /// Factor of the product of slack and multiplier from one start to the next.
 const FURTHER_UP: f64 = 1e3;
