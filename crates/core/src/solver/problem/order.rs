@@ -13,7 +13,6 @@ use crate::world::World;
 
 /// Groups of rows (contacts) that can be solved at the same time. All rows are of one kind (with fixed bodies, or
 /// between grains) and are sorted by tiles and colours.
-/// colours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {
     /// For each colour of each tile, the number of the row after its last row, counted within the kind. Rows of one
