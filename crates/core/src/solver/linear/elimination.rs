@@ -26,8 +26,8 @@ pub(crate) struct Elimination {
     pub body_at: Vec<u32>,
     /// The position of each body in the elimination order.
     pub place_of: Vec<u32>,
-    /// Boundaries of the lists of later neighbours: position k has the later neighbours `later[starts[k] ..
-    /// starts[k + 1]]`, in rising order. The index in `later` is the number of the off-diagonal block.
+    /// Boundaries of the lists of later neighbours, which are in rising order. The list of position k is
+    /// `later[starts[k] .. starts[k + 1]]`, and the index in `later` is the number of the off-diagonal block.
     pub starts: Vec<u32>,
     /// Later neighbours of all positions, given by their own positions in the elimination order.
     pub later: Vec<u32>,

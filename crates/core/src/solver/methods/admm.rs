@@ -25,12 +25,12 @@ use crate::solver::settings::SolverSettings;
 
 /// Initial compliance ε, the inverse of the penalty.
 const FIRST_COMPLIANCE: f64 = 0.03;
-/// Number of iterations between two checks of ε. A factorisation costs as much as about ten iterations.
+/// Number of iterations between two checks of the compliance ε. A factorisation costs as much as about ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// Minimum ratio of the larger to the smaller of the two residuals, of velocities and of impulses, at which ε is
-/// changed.
+/// Minimum ratio of the larger to the smaller of the two residuals, of velocities and of impulses, at which the
+/// compliance ε is changed.
 const OUT_OF_BALANCE: f64 = 4.0;
-/// Maximum factor by which ε changes at a time.
+/// Maximum factor by which the compliance ε changes at a time.
 const LARGEST_CHANGE: f64 = 10.0;
 /// Minimum and maximum compliance ε. With a smaller ε rounding errors in the factorisation matter; with a larger ε
 /// impulses hardly spread from contact to contact.

@@ -40,7 +40,7 @@ const NONE: u32 = u32::MAX;
 /// Motion of the surface of a fixed body at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Velocity of the shape at the contact at the end of the step, m/s.
+    /// Velocity of the shape at the contact in the step, m/s: for a prescribed motion, the mean over the step.
     pub velocity: DVec2,
     /// Velocity of the shape at the contact at the beginning of the step, m/s.
     pub before: DVec2,
