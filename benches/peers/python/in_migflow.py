@@ -15,8 +15,8 @@ import pile
 
 NO_REGION = [1e-9, -100.0, 0.0]  # radius and centre of the region without cohesion, m: far from all grains
 ANY_LIFETIME = [-1.0, 0.0]  # cohesion acts on contacts of any age
-LEAST_DETECTION = 1e-6 * pile.DIAMETER  # stands for a range of zero, m
-TOLERANCE = 1e-8  # of the solver, m: MigFlow's default
+LEAST_DETECTION = 1e-6 * pile.DIAMETER  # detection distance that stands for a cohesion range of 0, m
+TOLERANCE = 1e-8  # tolerance of the solver, m: MigFlow's default
 
 
 class Discs:

@@ -13,9 +13,9 @@ import interval
 
 FOLDER = pathlib.Path(__file__).parent.parent / "results" / "lmgc90"
 WET = "RST_WET_CLB"
-SWEEPS, MORE_SWEEPS = 5000, 20000  # sweeps allowed in a step
-LOOSE = 1e-4  # tolerance
-TIME_STEP = 1e-3  # of the series over tolerances, s
+SWEEPS, MORE_SWEEPS = 5000, 20000  # largest number of sweeps per step in the two series
+LOOSE = 1e-4  # tolerance from which a setting counts as loose
+TIME_STEP = 1e-3  # time step of the series over tolerances, s
 
 
 def read():

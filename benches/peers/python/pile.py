@@ -5,12 +5,12 @@ import math
 import numpy as np
 
 DIAMETER = 5e-3  # mean diameter d, m
-GRAVITY = 9.8  # m/s²
-AREAL_DENSITY = 1.0  # kg/m²
+GRAVITY = 9.8  # gravitational acceleration g, m/s²
+AREAL_DENSITY = 1.0  # areal density of the discs, kg/m²
 FRICTION = 0.5
-BOX_WIDTH = 16  # width of the box that the pile settled in, d
-DURATION = 1.0  # s
-RANGE = 0.01 * DIAMETER  # range of cohesion where a program has one, m
+BOX_WIDTH = 16  # width of the box in which the pile came to rest, d
+DURATION = 1.0  # simulated time of a run, s
+RANGE = 0.01 * DIAMETER  # gap up to which cohesion acts in programs that have such a range, m
 
 
 def read(path):

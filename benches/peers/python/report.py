@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes results/cohesion.json and screenshots/chart-programs.png from the runs of all programs.
 
-    report.py WORK [DATE]      # WORK: what run.sh made
+    report.py WORK [DATE]      # WORK: the folder that run.sh has made
 
 Numbers are means over initial states, with half of their 95 % confidence interval.
 """
@@ -46,8 +46,8 @@ OWN = {
     "range-default": lambda settings: "range" if settings["solver"] == "newton" else None,
     "schemes": lambda settings: "dem" if settings["stepper"] == "dem" else None,
 }
-LEAST_STATES = 5  # fewer initial states give no useful interval, and are not reported
-SIDE_BY_SIDE = 1.09  # factor between Δt of neighbouring curves in the picture
+LEAST_STATES = 5  # results with fewer initial states are not reported, because their intervals are too wide
+SIDE_BY_SIDE = 1.09  # factor that shifts Δt from curve to curve in the picture, so that points do not overlap
 
 
 def peers(work):

@@ -15,10 +15,10 @@ import time
 
 import pile
 
-STATES = [f"seed{seed}" for seed in (8, 1, 2, 3, 4, 5, 6, 7)]  # seed 8 is the pile that Slump ships
+STATES = [f"seed{seed}" for seed in (8, 1, 2, 3, 4, 5, 6, 7)]  # seed 8 made the pile that Slump ships
 BONDS = [0, 8, 20, 50]
-TIME_STEPS = [5e-3, 1e-3, 2e-4]  # s
-RANGES = [pile.RANGE, 0.0]  # m
+TIME_STEPS = [5e-3, 1e-3, 2e-4]  # time steps Δt, s
+RANGES = [pile.RANGE, 0.0]  # gaps up to which cohesion acts, m
 # Impedance of MuJoCo's contacts without overlap and at an overlap of 1 mm. The time constant of contacts is 2Δt, the
 # shortest that MuJoCo accepts: with a longer time constant, pairs that open slowly separate. `defaults` is MuJoCo's
 # default impedance. With `defaults` a pair bears 3 % of its cohesion force C₀ at the longest Δt; with `hard` it bears

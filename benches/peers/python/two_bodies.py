@@ -19,11 +19,11 @@ import runs
 
 BOND = 20.0
 RADIUS = np.array([pile.DIAMETER / 2])
-COHESION = BOND * pile.masses(RADIUS)[0] * pile.GRAVITY  # C₀, N
+COHESION = BOND * pile.masses(RADIUS)[0] * pile.GRAVITY  # cohesion force C₀, N
 OVERLAP = 1e-6 * pile.DIAMETER
-WAIT = 0.2  # s
+WAIT = 0.2  # simulated time after which a pair counts as held or separated, s
 BISECTIONS = 14
-SLIDING = 6.0  # speed of sliding, in μC₀Δt/m: friction stops a speed of 3
+SLIDING = 6.0  # initial sliding speed, in μC₀Δt/m: above 3, because friction would stop a slower disc
 
 
 def pair(case, gap=-OVERLAP):
