@@ -74,7 +74,7 @@ impl Mean {
         Self { mean: -self.mean, ..*self }.p_above(-bound)
     }
 
-    /// Formats the mean and its interval, each number with a sign and with this many decimals: "+0.12 (+0.10 … +0.14)".
+    /// Formats the mean and its interval with signs and with `decimals` decimals, as in "+0.12 (+0.10 … +0.14)".
     pub(super) fn signed(&self, decimals: usize) -> String {
         let Self { mean, low, high, .. } = self;
         format!("{mean:+.decimals$} ({low:+.decimals$} … {high:+.decimals$})")

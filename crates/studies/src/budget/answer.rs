@@ -89,7 +89,7 @@ fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseR
     }
 }
 
-/// Returns the numbers of the series of runs with the time steps Δt/2, Δt/4 and Δt/8, if all three gave a value.
+/// Returns the indices of the three series of runs with the time steps Δt/2, Δt/4 and Δt/8, if all three gave a value.
 fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize; 3]> {
     let all = design.variants.iter().zip(1..);
     let of_steps = all.filter(|(variant, series)| {
@@ -136,9 +136,9 @@ mod tests {
     use super::*;
     use crate::scene::{NewPile, built_in};
 
-    /// Returns the error budget of synthetic runs of a cohesive pile. The value of a run is the sum of 0.3, of the
-    /// effect `of` of its variant, of a random number that all runs from the same initial state share, and of the run's
-    /// own random number, whose standard deviation is `scatter`.
+    /// Returns the error budget of synthetic runs of a cohesive pile. The value of a run is the sum of four numbers:
+    /// 0.3; the effect that `of` returns for the run's change of the scene; a random number that all runs from the same
+    /// initial state share; and a random number of this run with the standard deviation `scatter`.
     fn made_up(
         seed: u64,
         scatter: f64,
@@ -149,7 +149,7 @@ mod tests {
         made_up_at(seed, scatter, limits, of, &as_expected)
     }
 
-    /// Like `made_up`, with a computing time `cost_of` (s) for a run of each variant.
+    /// Like `made_up`. In addition, `cost_of` returns the computing time of a run, s.
     fn made_up_at(
         seed: u64,
         scatter: f64,

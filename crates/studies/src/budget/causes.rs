@@ -12,11 +12,11 @@ use crate::world::FrictionCone;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Share {
-    /// The grains: their number and their initial state.
+    /// Causes in the grains: their number and their initial state.
     Grains,
-    /// The laws that contacts obey.
+    /// Causes in the laws that contacts obey.
     Law,
-    /// The numerical method: the time step, unsolved steps, and the initial guesses of the solver.
+    /// Causes in the numerical method: the time step, unsolved steps, and the initial guesses of the solver.
     Method,
 }
 
@@ -29,7 +29,7 @@ impl Share {
         }
     }
 
-    /// Returns the colour of the group in pictures.
+    /// Returns the colour of this group of causes in pictures.
     pub(crate) fn colour(self) -> Rgb {
         PALETTE[match self {
             Self::Grains => 3,
@@ -102,21 +102,22 @@ pub(crate) struct Variant {
     pub cost: f64,
 }
 
-/// Divisors of the scene's time step Δt, for the variants with shorter steps.
+/// Divisors of the time step Δt: an error budget also runs the scene with Δt/2, Δt/4 and Δt/8.
 pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
-/// Factor on the default tolerance of the solver, for the variant that measures the effect of unsolved steps. A smaller
-/// factor would not help: because of rounding, some steps cannot be solved to 1e-7 √(g d), with gravity g and mean
-/// diameter d.
+/// Factor on the default tolerance of the solver, with which an error budget measures the effect of unsolved steps. A
+/// smaller factor would not help: because of rounding, some steps cannot be solved to 1e-7 √(g d), with gravity g and
+/// mean diameter d.
 const TIGHTER: f64 = 1e-2;
-/// Touch tolerance of a variant, in mean diameters: contacts pull up to this gap. It is larger than the residual gaps
-/// of a step and smaller than the roughness of grains.
+/// Touch tolerance that an error budget tries instead of the scene's own, in mean diameters: contacts pull up to this
+/// gap. It is larger than the residual gaps of a step and smaller than the roughness of grains.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Restitution threshold of a variant, in units of g·Δt, the speed that gravity adds in one step: slower contacts do
-/// not bounce. Bounces slower than about this threshold are not visible.
+/// Restitution threshold that an error budget tries instead of none, in units of g·Δt, the speed that gravity adds in
+/// one step: slower contacts do not bounce. Bounces slower than about this threshold are not visible.
 const THRESHOLD: f64 = 2.0;
 
-/// Returns all variants that can matter to a scene and that the scene accepts. `pile` describes the grains of the
-/// scene, if they are generated. `resizes` is true if the number of grains can be changed.
+/// Returns all variants of a scene that the scene supports and that can have an effect. A variant is the scene with one
+/// change. `pile` describes the grains of the scene, if they are generated. `resizes` is true if the number of grains
+/// can be changed.
 pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
     let base = scene.settings();
     let (parameters, solver) = (base.parameters, base.solver);
@@ -124,7 +125,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     let mut add = |cause, label: &str, cost, settings: Settings| {
         let mut changed = scene.clone();
         changed.set_settings(settings);
-        // A change that the scene does not accept gives no variant.
+        // If the scene does not support a change, there is no variant with this change.
         if settings != base && changed.simulation().is_ok() {
             all.push(Variant { cause, label: label.to_owned(), settings, pile: None, cost });
         }

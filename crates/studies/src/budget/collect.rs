@@ -11,13 +11,14 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::statistics::{Mean, mean, mean_with};
 
-/// Least number of initial states of a series, which consists of all runs of one variant. A series ends when its
-/// interval is narrow, so a series whose few values are close together by chance ends too early. With 4 initial states,
-/// 7.7 % of 3,000 synthetic budgets without any effect report an effect; with 6 initial states, 5.4 %.
+/// Least number of initial states of a series, which consists of all runs with the same change of the scene. A series
+/// ends when its confidence interval is narrow, so a series whose few values are close together by chance ends too
+/// early. With 4 initial states, 7.7 % of 3,000 synthetic budgets without any effect report an effect; with 6 initial
+/// states, 5.4 %.
 const FIRST: usize = 6;
-/// Fraction of error budgets in which at least one interval may miss the true value.
+/// Fraction of error budgets in which at least one confidence interval may miss the true value.
 pub(super) const OUTSIDE: f64 = 0.05;
-/// Default half-width of an interval, as a fraction of the value.
+/// Default half-width of a confidence interval, as a fraction of the value.
 const PART: f64 = 0.1;
 
 /// Identifies a run of an error budget: the run of series number `series` (0 is the unchanged scene) from initial state
@@ -43,7 +44,7 @@ pub(super) struct Ran {
 pub(super) struct Limits {
     /// Largest computing time, core seconds.
     pub cost_secs: f64,
-    /// Requested half-width of every interval, in the unit of the quantity; `None` for the default.
+    /// Requested half-width of every confidence interval, in the unit of the quantity; `None` for a tenth of the value.
     pub within: Option<f64>,
     /// Number of parts into which the budget is divided, for example for several machines. All parts together have this
     /// many times the initial states of one part.
@@ -56,11 +57,11 @@ pub(super) struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum BudgetEnd {
-    /// Every interval is as narrow as requested.
+    /// Every confidence interval is as narrow as requested.
     Within,
     /// The computing time is used up.
     Cost,
-    /// The observer stopped the budget.
+    /// The function that watches the computation stopped it.
     Stopped,
     /// The runs of the unchanged scene gave no value.
     Failed,
@@ -68,7 +69,8 @@ pub(crate) enum BudgetEnd {
 
 /// All runs of an error budget that are finished so far.
 pub(super) struct Runs {
-    /// Finished runs, indexed by series (the number of the variant; 0 is the unchanged scene), then by initial state.
+    /// Finished runs, indexed by series (all runs with the same change of the scene; 0 is the unchanged scene), then by
+    /// initial state.
     pub all: Vec<Vec<Ran>>,
     pub quantities: usize,
     /// Requested half-width of the intervals of each quantity, in the unit of the quantity.
@@ -138,7 +140,8 @@ impl Runs {
         Some(format!("{count} of {} runs came to nothing: {reason}", runs.len()))
     }
 
-    /// Returns the computing time of a series divided by the time of the unchanged scene from the same initial states.
+    /// Returns the computing time of a series of runs, divided by the time of the unchanged scene from the same initial
+    /// states.
     pub(super) fn cost_ratio(&self, series: usize) -> f64 {
         let shared = self.all[series].len().min(self.all[0].len());
         let secs =
@@ -146,7 +149,7 @@ impl Runs {
         secs(series) / secs(0)
     }
 
-    /// True if a series has enough runs to be reported.
+    /// True if a series of runs is long enough to be reported.
     pub(super) fn is_begun(&self, series: usize) -> bool {
         self.all[series].len() >= FIRST
     }

@@ -41,15 +41,15 @@ pub struct BudgetOptions {
     /// Scene whose results are examined, with its settings.
     pub config: Config,
     /// Quantities to examine: columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`,
-    /// `total(…)` of such a column over the window. Empty for the slump.
+    /// `total(…)` of such a column over a window of time. The slump is examined if the list is empty.
     pub quantities: Vec<String>,
-    /// Simulated time at which the window begins, s; `None` for 0.
+    /// Simulated time at which the window of examined results begins, s; `None` for 0.
     pub from_secs: Option<f64>,
-    /// Simulated time at which the window ends, s; `None` for the end of the scene.
+    /// Simulated time at which the window of examined results ends, s; `None` for the end of the scene.
     pub to_secs: Option<f64>,
     /// Requested half-width of every confidence interval, in the unit of the quantity; `None` for a tenth of the value.
     pub within: Option<f64>,
-    /// Computing time with all cores in use, s.
+    /// Limit of the computing time with all cores in use, s.
     pub cost_secs: f64,
     /// The part of the initial states to run on this machine; `None` for all initial states.
     pub shard: Option<Shard>,
@@ -74,7 +74,7 @@ pub struct ErrorBudget {
 }
 
 impl ErrorBudget {
-    /// Returns the answer on the first quantity.
+    /// Returns the answer on the first examined quantity.
     pub fn first_answer(&self) -> Option<BudgetAnswer> {
         self.quantities.first().map(QuantityBudget::for_window)
     }

@@ -11,7 +11,7 @@ pub(crate) struct CauseRow {
     /// Group of the cause: grains, contact law or numerical method.
     pub share: Share,
     pub cause: &'static str,
-    /// The change.
+    /// Description of the change, for example the new time step.
     pub changed: String,
     /// Number of initial states for which both the changed and the unchanged scene gave a value.
     pub starts: usize,
@@ -56,7 +56,7 @@ impl Trust {
     }
 }
 
-/// The error budget of one quantity.
+/// The error budget of one quantity: its value, the effect of each possible cause, and a verdict.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct QuantityBudget {
     pub quantity: String,
@@ -104,9 +104,9 @@ pub struct BudgetAnswer {
 pub struct BudgetEffect {
     /// Group of the cause: grains, law or method.
     pub share: &'static str,
-    /// Colour of the group in pictures.
+    /// Colour of the group of causes in pictures.
     pub colour: Rgb,
-    /// The change.
+    /// Description of the change, for example the new time step.
     pub changed: String,
     /// Mean effect on the quantity and both ends of its interval, in the unit of the quantity.
     pub adds: [f64; 3],

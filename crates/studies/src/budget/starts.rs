@@ -1,4 +1,5 @@
-//! Provides the initial states that all variants of a scene share, and runs scenes from these states.
+//! Provides the initial states of an error budget, which the unchanged and the changed scenes share, and runs scenes
+//! from these states.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ pub(crate) struct RunValues {
     /// Reason why the values are invalid: the state was no longer finite, or grains were lost. `None` if the values are
     /// valid.
     pub failure: Option<String>,
-    /// Fraction of unsolved steps.
+    /// Fraction of the steps that missed their tolerance.
     #[serde(with = "number")]
     pub unsolved: f64,
     /// Computing time of the run without the preparation of its initial state, s.

@@ -48,7 +48,7 @@ pub struct CalibrateOptions {
 }
 
 /// Setup of one run: the initial states of the scene, the number of the initial state to use, a change of the numerical
-/// method (if any), and the window of time.
+/// method (if any), and the window of time in which results are evaluated.
 type Setup = (Starts, u64, Option<Variant>, Window);
 
 /// Calibrates a scene, and writes `report.md` and a picture of the confidence region to `folder`. The same call resumes

@@ -103,7 +103,8 @@ impl Region {
     }
 }
 
-/// Converts a point of the box into a place in the cube from −1 to 1, in which the polynomials are defined.
+/// Converts a point of the box (values of the varied parameters) into a place in the cube from −1 to 1, in which the
+/// polynomials are defined.
 fn place_of(space: &[[f64; 2]], point: &[f64]) -> Vec<f64> {
     let place = |([from, to], x): (&[f64; 2], &f64)| 2.0 * (x - from) / (to - from) - 1.0;
     space.iter().zip(point).map(place).collect()

@@ -1,5 +1,5 @@
-//! Fits a surrogate of the runs of a calibration: polynomials in the varied parameters, by least squares, with the
-//! covariance of their values.
+//! Fits a surrogate model, which predicts the results of runs: polynomials in the varied parameters, by least squares,
+//! with the covariance of their values.
 
 /// Number of runs per coefficient from which on the polynomials are cubic instead of quadratic. With fewer runs, the
 /// random scatter of a cubic polynomial is larger than the error of a quadratic polynomial (measured for the slump of
@@ -95,8 +95,8 @@ impl Surrogate {
     }
 }
 
-/// Returns the basis functions at a place: all products of Legendre polynomials up to a total degree, which is at most
-/// 3.
+/// Returns the basis functions at a place: all products of Legendre polynomials up to the total degree `degree`, which
+/// is at most 3.
 fn basis(place: &[f64], degree: usize) -> Vec<f64> {
     let mut products = vec![(1.0, 0)];
     for &x in place {

@@ -105,7 +105,8 @@ impl Claim {
     }
 }
 
-/// Number of shuffles. The rate of a test at the 5 % level is then known to ± 1.4 % (95 % interval).
+/// Number of shuffles of the time steps, from which the rate of acceptance by chance is computed. The rate of a test at
+/// the 5 % level is then known to ± 1.4 % (95 % interval).
 const SHUFFLES: usize = 1000;
 
 /// Runs that differ in one number only: pairs of this number and the result of the run.

@@ -11,7 +11,7 @@ use crate::harness::{MeasuredCase, Measurements};
 use crate::scene::NewPile;
 use crate::statistics::{Mean, mean, p_of_either, p_value, slope};
 
-/// Choices, except the friction cone, that affect every claim about the slump of piles.
+/// Text that names the choices, except the friction cone, that affect every claim about the slump of piles.
 const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
                        restitution without a threshold; the states. `slump budget` tells what each of them adds";
 const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];

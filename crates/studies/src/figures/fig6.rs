@@ -13,19 +13,20 @@ use crate::statistics::{mean, p_of_either, p_value, slope, turning_point};
 
 const RESAMPLINGS: usize = 400;
 /// Number of resamplings of the initial states for each shuffle of Δt. The number is smaller than [`RESAMPLINGS`] to
-/// save time. With fewer resamplings the interval is narrower, so that a shuffle differs from 1 more often.
+/// save time. With fewer resamplings the interval is narrower, so that the turning point of shuffled runs differs from
+/// 1 more often.
 const FEWER_RESAMPLINGS: usize = 20;
 
 /// Mean diameter d of the piles, m, and gravity g, m/s².
 const DIAMETER: f64 = 5e-3;
 const GRAVITY: f64 = 9.8;
 
-/// Returns log₁₀ of the cohesive time Bond·Δt/√(d/g) of a run.
+/// Returns log₁₀ of the cohesive time Bond·Δt/√(d/g) of a run, with mean diameter d and gravity g.
 pub(super) fn log_time(run: &MeasuredCase) -> f64 {
     (run.at("bond") * run.at("dt") / unit_secs()).log10()
 }
 
-/// Returns √(d/g), the time unit of the piles, s.
+/// Returns √(d/g), the time unit of the piles, s, with mean diameter d and gravity g.
 pub(super) fn unit_secs() -> f64 {
     (DIAMETER / GRAVITY).sqrt()
 }

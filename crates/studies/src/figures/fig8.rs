@@ -13,7 +13,7 @@ use crate::statistics;
 /// Gap between the discs i and j at the end, in diameters, above which their bond counts as open. The value is well
 /// above rounding errors, and well below any gap of an open bond.
 pub(super) const OPEN_GAP: f64 = 1e-6;
-/// Outcomes in the paper: time step, s, and true for an open bond or false for a closed bond.
+/// Outcomes of the cradle in the paper: time step, s, and true for an open bond or false for a closed bond.
 const PAPER: [(f64, bool); 14] = [
     (1e-4, true),
     (2e-4, true),
@@ -37,12 +37,13 @@ fn is_open(run: &MeasuredCase) -> bool {
     run.reading("first_gap") > OPEN_GAP
 }
 
-/// Returns the number of open bonds and the number of all bonds.
+/// Returns the number of runs of the cradle with an open bond, and the number of all runs.
 fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
     [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
 
-/// Returns the number of the paper's outcomes that the runs reproduce. There is one run per time step Δt.
+/// Returns the number of the paper's outcomes (bond open or closed) that the runs reproduce. There is one run per time
+/// step.
 fn agreed(rows: &Measurements<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
         rows.0.iter().any(|run| run.at("dt") == step && is_open(run) == open)
@@ -50,7 +51,7 @@ fn agreed(rows: &Measurements<'_>) -> usize {
     PAPER.iter().filter(agrees).count()
 }
 
-/// Draws the sensitivity of Fig. 8: the pattern of open and closed bonds with one choice changed at a time.
+/// Draws the sensitivity of Fig. 8: the pattern of open and closed bonds if one setting is changed at a time.
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let all = studies.choices("cradle-choices")?;
@@ -89,8 +90,8 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }
 
-/// Tests the claim that most start distances of k give the paper's pattern, at the largest stopping tolerance of the
-/// study.
+/// Tests the claim that most start distances of disc k give the paper's pattern of open and closed bonds, at the
+/// largest stopping tolerance of the study.
 fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
     let loosest = rows.values("tolerance").pop().unwrap_or(f64::NAN);
     let rows = rows.with("tolerance", loosest);
@@ -127,7 +128,7 @@ fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     .hanging_on("that search, the stop of 2.2·10⁻³ m/s, ρ = 0.2 (the paper states none), the cold start")
 }
 
-/// Tests the claim that the shock opens the bond at small Δt, at the smallest stopping tolerance of the study.
+/// Tests the claim that the shock opens the bond at small time steps, at the smallest stopping tolerance of the study.
 fn shock_opens(rows: &Measurements<'_>) -> Claim {
     let tolerance = rows.values("tolerance")[0];
     let tight = rows.with("tolerance", tolerance);
@@ -177,7 +178,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     let claims = at_large_steps.into_iter().map(|(tolerance, large)| {
         let listed: Vec<String> =
             large.iter().map(|point| format!("{:.0} % at {}", 100.0 * point.y, point.x)).collect();
-        // The claim is accepted if the intervals at the smallest and at the largest of these Δt do not overlap.
+        // The claim is accepted if the intervals at the smallest and at the largest of the tested time steps do not
+        // overlap.
         let ends = large.first().zip(large.last());
         let intervals = ends.and_then(|(first, last)| first.interval.zip(last.interval));
         let rises = intervals.is_some_and(|(first, last)| last.0 > first.1);
@@ -199,8 +201,8 @@ fn colour(value: f64) -> Rgb {
     if value > 0.5 { (240, 176, 80) } else { (70, 120, 175) }
 }
 
-/// Returns the edges of cells around values with a constant ratio. Neighbouring cells share their edge exactly, so that
-/// no gap is drawn between them.
+/// Returns the edges of a map's cells around values with a constant ratio. Neighbouring cells share their edge exactly,
+/// so that no gap is drawn between them.
 pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     let half = match values {
         [first, second, ..] => (second / first).sqrt(),

@@ -9,8 +9,8 @@ use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that the figure shows, s: one on each side of the paper's threshold, and four whose outcome depends on
-/// the phase of the motion.
+/// Time steps that the figure shows, s. In the paper, the bond opens at the first and stays closed at the second. The
+/// outcome of the other four depends on the phase of the motion.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
 /// Ends of the paper's axes: time, s, and position, diameters.
 const ENDS: (f64, f64) = (2.0, 5.0);
@@ -20,7 +20,7 @@ const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
 const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
 /// Time step at which, according to the paper, disc i catches up with disc j, s.
 const CAUGHT_SECS: f64 = 5e-3;
-/// Largest ratio of two velocities that count as equal.
+/// Largest ratio of two velocities that count as equal: the largest velocity divided by the smallest.
 const ONE_VELOCITY: f64 = 1.1;
 /// Choices that affect the verdicts on the three discs of the cradle.
 const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \

@@ -1,4 +1,5 @@
-//! Draws a map of the slump over Bond number and time step Δt, with contours of the cohesive time Bond·Δt/√(d/g).
+//! Draws a map of the slump over Bond number and time step Δt, with contours of the cohesive time Bond·Δt/√(d/g), where
+//! d is the mean diameter and g gravity.
 
 use std::ops::RangeInclusive;
 
@@ -15,7 +16,7 @@ use crate::statistics::{Mean, mean, p_value};
 const MOST: f64 = 0.55;
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
-/// Factor around a cohesive time of 1 within which a cohesive time counts as near 1.
+/// Largest factor between a cohesive time and 1 at which the cohesive time counts as near 1.
 const NEAR: f64 = 3.0;
 const SHADES: u32 = 64;
 

@@ -23,7 +23,7 @@ const STUDIES: &[(&str, &str)] = shipped![
     "pile" "pile-compressive" "cradle-courses" "cradle-choices" "cradle-share" "cradle-map" "pile-map"
 ];
 
-/// A study with all its runs completed.
+/// A study (a set of runs) whose runs are all completed.
 pub(super) struct FinishedStudy {
     study: Study,
     pub table: RunsTable,

@@ -122,9 +122,10 @@ fn one_step(speed: f64, time_step_secs: f64, bond: f64) -> Result<(f64, f64, f64
     Ok((mass, force, grains.velocities[0].x - grains.velocities[1].x))
 }
 
-/// Returns the opening speed v^n after a step by the three cases of the paper's §2.2, without other forces. It is −ρ
-/// v^{n−1} if the contact closes or bounces, with the opening speed v^{n−1} before the step, and v^{n−1} − ΔtC₀/m_ij if
-/// the contact opens. ΔtC₀/m_ij is `capture_speed`.
+/// Returns the opening speed v^n after a step by the three cases of the paper's §2.2, without other forces. Let v^{n−1}
+/// be the opening speed before the step, ρ the restitution, C₀ the cohesion force and m_ij the effective mass. The
+/// result is −ρ v^{n−1} if the contact closes or bounces, and v^{n−1} − ΔtC₀/m_ij if the contact opens. ΔtC₀/m_ij is
+/// `capture_speed`.
 fn theory(speed: f64, capture_speed: f64) -> f64 {
     if speed * (1.0 + RESTITUTION) > capture_speed {
         speed - capture_speed

@@ -20,7 +20,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// Returns the bench of an experiment in `folder` on this machine. `version` is the version of the program.
+    /// Prepares the folder of an experiment on this machine. `version` is the version of the program.
     pub(crate) fn new(folder: &Path, effort: Effort, version: &str) -> Result<Self> {
         check_writable("out", folder)?;
         Ok(Self { folder: folder.to_owned(), effort, machine: Machine::this(version)? })

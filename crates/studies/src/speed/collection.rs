@@ -34,8 +34,8 @@ const ADVANCE: SolverSettings = SolverSettings {
 /// 138 grains.
 const WIDTH_BY_ROOT: f64 = 1.35;
 
-/// Plan of a collection. There is one pile for every Bond number and time step, and each pile gives one step at each
-/// time.
+/// Plan of a collection of steps on which methods are compared. There is one pile for every Bond number and time step,
+/// and each pile gives one step at each time.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CollectionPlan {
     pub bonds: Vec<f64>,

@@ -1,5 +1,5 @@
 //! Draws charts of the speed of solver methods against their accuracy: in single steps of small and large piles, and in
-//! whole simulations. Every method of the registry is on every chart.
+//! whole simulations. Every solver method of the program is on every chart.
 //!
 //! The folder of a chart contains pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and the folder
 //! `measured/`. In that folder, each program and processor has its own journals of measurements. So the same command

@@ -38,7 +38,8 @@ pub(super) struct References {
     pub found: usize,
     /// Largest distance between the velocities of two known solutions, √(g d), with gravity g and mean diameter d.
     pub spread: f64,
-    /// Estimated distance of the least accurate known solution from an exact solution, √(g d).
+    /// Estimated distance of the least accurate known solution from an exact solution, √(g d), with gravity g and mean
+    /// diameter d.
     #[serde(with = "number")]
     pub told: f64,
     /// Largest residual of the known solutions.
@@ -50,8 +51,8 @@ pub(super) struct References {
 pub(super) struct ReferenceSearch(pub SolutionSearch);
 
 impl References {
-    /// Returns the error, √(g d), below which methods cannot be compared: smaller errors only distinguish the known
-    /// solutions from each other, or the known solutions from exact solutions.
+    /// Returns the error, in √(g d) with gravity g and mean diameter d, below which methods cannot be compared: smaller
+    /// errors only distinguish the known solutions from each other, or the known solutions from exact solutions.
     pub(super) fn floor(&self) -> f64 {
         self.spread.max(self.told)
     }
@@ -84,7 +85,8 @@ pub(super) struct TimedSolve {
     pub sweeps: u32,
     /// Shortest computing time among the repeats, s.
     pub secs: f64,
-    /// Distance of the velocities to the nearest known solution of Coulomb's law, √(g d).
+    /// Distance of the velocities to the nearest known solution under Coulomb friction, √(g d), with gravity g and mean
+    /// diameter d.
     #[serde(with = "number")]
     pub error: f64,
 }
@@ -152,7 +154,8 @@ impl SolveTimer<'_> {
         (effort, has_ended)
     }
 
-    /// Returns the distance of the velocities to the nearest known solution, √(g d).
+    /// Returns the distance of the velocities to the nearest known solution, √(g d), with gravity g and mean diameter
+    /// d.
     fn error<M: Model>(&self, solved: &StepProblem<M>) -> f64 {
         let all = self.references.velocities.iter();
         let distances = all.map(|reference| distance_to_velocities(solved, reference));

@@ -1,4 +1,4 @@
-//! Lists the solver variants that the charts compare: every method of the registry with its settings.
+//! Lists the solver variants that the charts compare: every solver method of the program, with its settings.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::harness::{Change, distinct};
@@ -71,8 +71,8 @@ fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }
 
-/// Returns the variants for every solver method of the registry, in the order of the registry, and for every stepper
-/// without a solver method.
+/// Returns the variants for every solver method of the program, in the order of the list of methods, and for every
+/// stepper without a solver method.
 pub(super) fn all() -> Vec<Change> {
     let mut variants = of_problems(false);
     let of = |stepper: Stepper| Change::of_solver(stepper.name(), stepper, &SolverSettings::SWEEPS);

@@ -86,8 +86,8 @@ impl Parameter {
     }
 }
 
-/// A theoretical boundary on a map: its name, the name of the variant to which it applies (empty for all variants), and
-/// the y value as a function of x.
+/// A theoretical boundary on a map: its name, the name of the variant (stepper or solver method) to which it applies,
+/// empty for all variants, and the y value as a function of x.
 type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
 
 /// A stability map over two parameters.
@@ -197,14 +197,15 @@ fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     })
 }
 
-/// Returns the variants that are a method or a stepper of the registry without further changes. Only they have maps.
+/// Returns the variants that are a solver method or a stepper without further changes. Only these variants have maps.
 fn of_registry() -> impl Iterator<Item = &'static Change> {
     let steppers = Stepper::ALL.iter().map(|stepper| stepper.name());
     let names: Vec<&str> = METHODS.iter().map(|info| info.name).chain(steppers).collect();
     VARIANTS.iter().filter(move |variant| names.contains(&&*variant.name))
 }
 
-/// Draws all stability maps, with the methods of the registry side by side. Each sheet comes with the name of its file.
+/// Draws all stability maps, with the solver methods and steppers side by side. Each sheet comes with the name of its
+/// file.
 ///
 /// # Errors
 /// If a scene is invalid.

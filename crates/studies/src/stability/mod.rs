@@ -40,8 +40,8 @@ pub struct Challenge {
     /// second.
     limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
-    /// The right answer of the scene with the same name as a sentence, and the error that can be computed at a single
-    /// moment of a run of this scene.
+    /// Right answer as a sentence, and a measure of error for single moments of a run, if there is one. Both refer to
+    /// the scene with the same name as the test.
     seen: Option<(&'static str, SeenError)>,
 }
 
@@ -52,7 +52,7 @@ pub struct SeenVerdict {
     pub name: &'static str,
     /// Value of the error; 0 for the right answer.
     pub error: f64,
-    /// Largest error at which a method holds.
+    /// Largest error at which the verdict is that the method holds the scene.
     pub limit: f64,
 }
 
@@ -316,8 +316,8 @@ fn jitter(simulation: &Simulation) -> f64 {
     jitter_of(simulation.world(), simulation.observables().kinetic_energy)
 }
 
-/// Returns the speed √(2 E_kin/M) in units of √(g d), for a world with the kinetic energy E_kin (J) and the total mass
-/// M.
+/// Returns the speed √(2 E_kin/M) in units of √(g d) for a world with the kinetic energy E_kin (J) and the total mass
+/// M, gravity g and mean diameter d.
 fn jitter_of(world: &World, kinetic_energy: f64) -> f64 {
     let mass: f64 = world.grains.masses.iter().sum();
     let scale = world.gravity.magnitude() * world.mean_diameter;
@@ -331,7 +331,7 @@ fn energy_scale(simulation: &Simulation) -> f64 {
 }
 
 /// Returns the larger of two numbers: the longest displacement of any grain since the initial state in `scene`, in mean
-/// diameters d, and the remaining speed, in √(g d). The result is 0 for a scene at rest.
+/// diameters d, and the remaining speed, in √(g d) with gravity g. The result is 0 for a scene at rest.
 fn unrest(simulation: &Simulation, scene: &Scene) -> f64 {
     longest_way(simulation, scene).max(jitter(simulation))
 }

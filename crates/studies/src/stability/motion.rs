@@ -20,9 +20,9 @@ const WATCHED: f64 = 1.2;
 /// Duration of the blow on two discs, s.
 const BLOW_SECS: f64 = 0.1;
 
-/// Returns the larger of two errors of a sliding disc: its largest distance from the initial level, in d, and the
-/// relative error of its sliding distance. The error of the distance is reduced by half the distance of one step, by
-/// which time stepping schemes may differ.
+/// Returns the larger of two errors of a sliding disc: its largest distance from the initial level, in diameters, and
+/// the relative error of its sliding distance. The error of the distance is reduced by half the distance of one step,
+/// by which time stepping schemes may differ.
 pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::dilatancy();
     scene.parameters.time_step_secs = trial.level;
@@ -42,9 +42,9 @@ pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     Ok(off_level.max(beyond / right))
 }
 
-/// Returns the larger of two errors of two discs that slide on the floor and are hit from above: the error of their
-/// position along the floor, in d, due to friction that does not follow the pressure at the same time; and the error of
-/// their final speed, relative to the loss of speed by the blow.
+/// Returns the larger of two errors of two discs that slide on the floor and are hit from above. One error is that of
+/// their position along the floor, in diameters, due to friction that does not follow the pressure at the same time.
+/// The other error is that of their final speed, relative to the loss of speed by the blow.
 pub(super) fn blow(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::blow();
     scene.parameters.time_step_secs = trial.level;
@@ -151,7 +151,7 @@ const SHUFFLED_ROWS: usize = 6;
 const SPEED: f64 = 0.05;
 
 /// Returns the largest difference between the displacements of a grain in a run far from the origin and in the same run
-/// at the origin, in d.
+/// at the origin, in mean diameters.
 pub(super) fn far(trial: &Trial) -> Result<f64> {
     let [here, there] =
         [0.0, trial.level].map(|distance| scenes::heap_far_away(FAR_ROWS, distance));
@@ -223,7 +223,7 @@ pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
 }
 
 /// Returns the error of a heap at rest whose time step grows: the larger of the longest displacement of any grain, in
-/// d, and the remaining speed, in √(g d).
+/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.parameters.time_step_secs = SMALL_STEP_SECS;

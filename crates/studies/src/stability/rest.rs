@@ -145,7 +145,7 @@ fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
 }
 
 /// Returns the larger of two numbers after very many steps of a heap at rest: the longest displacement of any grain, in
-/// d, and the remaining speed, in √(g d).
+/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn rest(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap(SMALL_ROWS);
     let mut simulation = trial.start(scene.clone())?;
@@ -157,13 +157,14 @@ pub(super) fn rest(trial: &Trial) -> Result<f64> {
 
 /// Number of sweeps per step, or of iterations of a method without sweeps, for which a window has time.
 const WINDOW_SWEEPS: u32 = 40;
-/// Number of steps, which begin without impulses. In free fall, a grain would move by 0.2 diameters in these steps.
+/// Number of steps in the tests with very many contacts. The first step begins without impulses. In free fall, a grain
+/// would move by 0.2 diameters in these steps.
 const STEPS: u64 = 20;
 /// Number of discs in every other row of the lattice, and number of rows. The lattice has 3,900 contacts.
 const LATTICE: [usize; 2] = [37, 36];
 
 /// Returns the larger of the remaining motion in a lattice of discs and the residual of its last step. The motion is
-/// the larger of the longest displacement, in d, and the remaining speed, in √(g d).
+/// the larger of the longest displacement, in mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     let [columns, rows] = LATTICE;
     let scene = scenes::lattice(columns, rows, trial.level);
@@ -172,8 +173,8 @@ pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene).max(simulation.observables().residual))
 }
 
-/// Returns the remaining motion in a heap with a given number of grains: the larger of the longest displacement, in d,
-/// and the remaining speed, in √(g d).
+/// Returns the remaining motion in a heap with a given number of grains: the larger of the longest displacement, in
+/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn size(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap_of(trial.count());
     let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
@@ -187,8 +188,8 @@ pub(super) fn size(trial: &Trial) -> Result<f64> {
 const CHAIN: usize = 8;
 /// Duration of the test of a chain, s. A chain that is overloaded by 1 % opens in a third of this duration.
 const CHAIN_SECS: f64 = 0.04;
-/// Time in which the chain hangs at rest before the test, s. Its Bond number then is the second constant times the
-/// breaking Bond number, so that the chain holds. With a much larger Bond number, springs would recoil in the test.
+/// Time in which the chain hangs at rest before the test, s. Its Bond number then is [`SURE`] times the breaking Bond
+/// number, so that the chain holds. With a much larger Bond number, springs would recoil in the test.
 const HANG_SECS: f64 = 0.04;
 const SURE: f64 = 1.5;
 /// Number of bisections of the breaking Bond number, which determine it to a factor of 4^(1/2^8), that is, 0.5 %.
@@ -224,8 +225,8 @@ pub(super) fn bridge(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::bridge(BRIDGE)))
 }
 
-/// Returns the gap between the discs i and j of the paper's cradle after the shock, in d. If the steps are solved well,
-/// the gap stays closed.
+/// Returns the gap between the discs i and j of the paper's cradle after the shock, in diameters. If the steps are
+/// solved well, the gap stays closed.
 pub(super) fn shock(trial: &Trial) -> Result<f64> {
     let mut scene = cradle();
     scene.parameters.time_step_secs = SHOCK_STEP_SECS;
@@ -256,7 +257,8 @@ pub(super) fn overlap(trial: &Trial) -> Result<f64> {
 }
 
 /// Returns the larger of two numbers for discs in a box that is too small: the fraction of the steps that were not
-/// solved to their tolerance, and the mean remaining speed over the last hundred steps, in √(g d).
+/// solved to their tolerance, and the mean remaining speed over the last hundred steps, in √(g d) with gravity g and
+/// mean diameter d.
 pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::squeeze(trial.level))?;
     let (mut unsolved, mut speeds) = (0u64, 0.0);
@@ -272,7 +274,8 @@ pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
 }
 
 /// Returns the larger of two numbers after walls have moved in and the grains have had time to come to rest: the
-/// largest distance of a grain from its right position, in d, and the remaining speed, in √(g d).
+/// largest distance of a grain from its right position, in mean diameters d, and the remaining speed, in √(g d) with
+/// gravity g.
 pub(super) fn moving_walls(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(with_time_step(trial, scenes::press()))?;
     advance(&mut simulation, scenes::pressing_secs() + SETTLING_SECS)?;

@@ -11,7 +11,7 @@ use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::harness::Change;
 
-/// Verdict on a method in a stability test, from the best to the worst.
+/// Verdict on a method in a stability test. The verdicts are ordered from the best to the worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StabilityVerdict {

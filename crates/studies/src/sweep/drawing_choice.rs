@@ -15,7 +15,7 @@ pub struct SweepChart {
     /// Names of the settings that have one panel for each combination of their values.
     #[serde(default)]
     pub panels: Vec<String>,
-    /// Settings with values. Runs with these values are drawn as horizontal lines, for comparison.
+    /// Values of settings. Runs with these values are drawn as horizontal lines, for comparison.
     #[serde(default)]
     pub level: toml::Table,
 }

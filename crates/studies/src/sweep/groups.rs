@@ -135,8 +135,8 @@ fn words(values: &[Value]) -> String {
 mod tests {
     use super::*;
 
-    /// Returns the groups of a study of the pile that varies the settings in `vary`, with made-up results. `slump`
-    /// gives the slump of each run. The run with the number `spoil` has lost a grain.
+    /// Returns the groups of runs of a study of the pile, with made-up results. The study varies the settings in
+    /// `vary`. `slump` gives the slump of each run. The run with the number `spoil` has lost a grain.
     fn reported(vary: &str, slump: impl Fn(usize) -> f64, spoil: Option<usize>) -> Vec<RunGroup> {
         let text = format!("name = \"made\"\n[base]\nscene = \"pile\"\n[vary]\n{vary}");
         let study = Study::parse(&text, "made.toml".as_ref(), false).expect("a study");
@@ -154,8 +154,8 @@ mod tests {
 
     #[test]
     fn means_are_over_seeds_and_differences_are_taken_seed_by_seed_from_the_first_value() {
-        // The slump differs by 0.1 from seed to seed. Δt adds 0.02 to 0.022, which is only visible in paired
-        // differences.
+        // In the made-up results, the slump differs by 0.1 from seed to seed. The larger Δt adds 0.02 to 0.022, which
+        // is only visible in paired differences.
         let vary = "bond = [0, 20]\ndt = [1e-3, 5e-3]\nseed = [4, 5, 6]\n";
         let slump = |run: usize| {
             let (seed, dt, bond) = (run % 3, run / 3 % 2, run / 6);

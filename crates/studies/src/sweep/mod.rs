@@ -123,7 +123,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
         return Ok(None);
     }
     let table = join(study, &folders, folder)?;
-    // All runs are complete, so no other process is writing a run.
+    // All runs are complete, so no other process is still writing files here.
     let drafts = [folder.to_owned(), folder.join(SERIES), folder.join(STATES)];
     drafts.iter().try_for_each(|folder| remove_drafts(folder))?;
     Ok(Some(table))

@@ -26,7 +26,7 @@ pub(super) struct RunGroup {
     pub unsolved: f64,
     /// Largest estimated velocity error of a step, m/s; `null` if a state was no longer finite.
     pub largest_velocity_error: f64,
-    /// Largest mean overlap of a run, in mean diameters d.
+    /// Largest of the runs' mean overlaps (means over all steps), in mean diameters d.
     pub mean_overlap: f64,
     /// Mean computing time of a run, s.
     pub secs: f64,

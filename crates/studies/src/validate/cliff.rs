@@ -61,9 +61,10 @@ fn bound(bond: f64) -> f64 {
     0.5 * COORDINATION * bond * TAN_OF_FRICTION * steepness
 }
 
-/// Returns the Bond number above which the columns of a seed remain standing: the geometric mean of the last Bond
-/// number at which a column falls and the first at which a column stands; NaN if there is no such pair. At large Δt,
-/// columns with even stronger cohesion may fall again. This is a finding of the paper and not part of Mohr's theory.
+/// Returns the Bond number above which columns made from the same seed remain standing: the geometric mean of the last
+/// Bond number at which a column falls and the first at which a column stands; NaN if there is no such pair. At large
+/// Δt, columns with even stronger cohesion may fall again. This is a finding of Abramian and Staron (2020) and not part
+/// of Mohr's theory.
 fn standing_from(of_seed: &Measurements) -> f64 {
     let runs = &of_seed.0;
     let Some(first) = runs.iter().position(|case| case.reading("slump") < STANDS) else {

@@ -66,8 +66,8 @@ const COHESION: f64 = 5.0;
 /// The two time steps of the experiment, s.
 const SHORT: f64 = 2e-3;
 const LONG: f64 = 4e-3;
-/// Durations of the runs: under `range` in units of t₀, and under `moreau` in units of 2/(R (1 − ρ²)). See the module
-/// for t₀ and R.
+/// Durations of the runs. Under `range`, the unit is the time in which breaking bonds would take all energy. Under
+/// `moreau`, the unit is 2/(R (1 − ρ²)), with the collision rate R per disc and the restitution ρ.
 const OF_BONDS: f64 = 0.5;
 const OF_RESTITUTION: f64 = 3.0;
 /// Number of moments at which the temperature is measured.
@@ -95,9 +95,9 @@ fn cases(effort: Effort) -> Vec<ExperimentCase> {
 
 struct CooledGas {
     run: WatchedRun,
-    /// Times, s, and the values of x = √(T₀/T) at these times.
+    /// Times, s, and the values of x = √(T₀/T) at these times, with the temperature T and the initial temperature T₀.
     points: Vec<(f64, f64)>,
-    /// Thermal speed √(2T₀/m) at the start, m/s.
+    /// Thermal speed √(2T₀/m) at the start, m/s, with the initial temperature T₀ and the mass m of a disc.
     thermal_speed: f64,
 }
 
@@ -111,13 +111,16 @@ struct GasRun {
 }
 
 impl GasRun {
-    /// Returns the collision rate R (see the module), 1/s, for a given initial thermal speed √(2T₀/m), m/s.
+    /// Returns the number R of collisions per disc and second at the initial temperature T₀, 1/s, for a given initial
+    /// thermal speed √(2T₀/m), m/s, with the mass m of a disc.
     fn rate(&self, thermal_speed: f64) -> f64 {
         collisions_per_distance(f64::from(self.discs)) * thermal_speed / 2f64.sqrt()
     }
 
-    /// Returns the time t₀ in which bonds would take all energy (see the module), s, for a given initial thermal speed
-    /// √(2T₀/m), m/s. T₀/W is the square of this speed divided by C₀δ_c/m_ij.
+    /// Returns the time t₀, s, in which breaking bonds would take all energy of the gas, for a given initial thermal
+    /// speed √(2T₀/m), m/s, with the initial temperature T₀ and the mass m of a disc. If W is the work to break a bond,
+    /// T₀/W is the square of this speed divided by C₀δ_c/m_ij, with the cohesion force C₀, the debonding distance δ_c
+    /// and the effective mass m_ij.
     fn bond_time(&self, thermal_speed: f64) -> f64 {
         let work = COHESION * DEBONDING_DISTANCE * DIAMETER;
         2.0 * thermal_speed.powi(2) / (self.rate(thermal_speed) * work)
@@ -130,7 +133,7 @@ impl GasRun {
         2.0 * OF_RESTITUTION / (self.rate(THERMAL_SPEED) * (1.0 - self.restitution.powi(2)))
     }
 
-    /// Runs the gas with the cohesion C₀/m_ij = `cohesion`, m/s², and returns its temperatures.
+    /// Runs the gas with a cohesion force of `cohesion` times the effective mass (m/s²), and returns its temperatures.
     fn cooled(&self, cohesion: f64) -> Result<CooledGas> {
         let mut scene = gas(self.discs as usize, self.seed);
         let half = 0.5 * side(f64::from(self.discs));
@@ -173,8 +176,9 @@ impl GasRun {
         Ok(run.with([("factor", self.factor(&points, without, thermal_speed))]))
     }
 
-    /// Returns the factor f of the cohesive term in x − 1 − a t = f ∫ ¼ R (1 − ρ) (√π ρ k x − ½ k² x²) dt, by least
-    /// squares. a, 1/s, is dx/dt without cohesion. See the module for x and the other symbols.
+    /// Returns the ratio f of the measured effect of cohesion to the predicted effect, by least squares. With the
+    /// temperature T, its initial value T₀ and x = √(T₀/T), it is the factor f in x − 1 − a t = f ∫ ¼ R (1 − ρ) (√π ρ k
+    /// x − ½ k² x²) dt. a is dx/dt without cohesion (`without`, 1/s). The comment of the module explains R, ρ and k.
     fn factor(&self, points: &[(f64, f64)], without: f64, thermal_speed: f64) -> f64 {
         let rho = self.restitution;
         let k = 2f64.sqrt() * COHESION * self.time_step_secs / thermal_speed;

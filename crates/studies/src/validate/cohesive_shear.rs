@@ -31,12 +31,14 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 pub(super) const INERTIAL: f64 = 0.08;
-/// Values of the dimensionless cohesion η = C₀/(P d) that count as weak and as strong cohesion.
+/// Values of the dimensionless cohesion η = C₀/(P d) that count as weak and as strong cohesion. C₀ is the cohesion
+/// force, P the pressure and d the diameter.
 pub(super) const WEAK: f64 = 1.0;
 const STRONG: f64 = 30.0;
 
 /// Values of the cohesion η = C₀/(P d) and of the bond energy E = W/(m γ̇² d²) of the layers with a prescribed bond
-/// energy. Time steps of 1 ms resolve the breaking of the weakest of these bonds.
+/// energy. C₀ is the cohesion force, P the pressure, W the work to break a bond, γ̇ the shear rate, and m and d are
+/// mass and diameter of a grain. Time steps of 1 ms resolve the breaking of the weakest of these bonds.
 const FORCES: [f64; 2] = [3.0, 10.0];
 const ENERGIES: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 

@@ -29,7 +29,8 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const FRICTION: f64 = 0.5;
-/// Aspect ratio a up to which the run-out is proportional to a.
+/// Aspect ratio (height divided by half the width) of a column up to which the run-out is proportional to the aspect
+/// ratio.
 const LINEAR_TO: f64 = 2.0;
 /// Duration of a run after the release of the column, in units of √(H₀/g), with the height H₀ of the column and gravity
 /// g.

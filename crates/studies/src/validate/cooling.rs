@@ -1,12 +1,12 @@
 //! Validates a gas of discs that cools by collisions with a constant restitution e (P. K. Haff, J. Fluid Mech. 134,
 //! 401, 1983).
 //!
-//! Let T = ½ m⟨v²⟩ be the temperature in the plane, with the mass m of a disc. Each collision dissipates (1 − e²) T on
-//! average: the relative velocity along the normal has the variance 2T/m, its mean square over collisions is 4T/m, and
-//! the fraction ¼ m (1 − e²) of this square is lost as energy. A disc collides ω = 2√π n d χ √(T/m) times per second
-//! (Enskog), with n discs of diameter d per area, and the pair correlation at contact χ = (1 − 7φ/16)/(1 − φ)² at the
-//! solid fraction φ (D. Henderson 1975). Two discs share a collision. For N discs with the energy E = N T, dE/dt = −N
-//! √π n d χ (1 − e²) T √(T/m).
+//! Let T = ½ m⟨v²⟩ be the temperature in the plane, with the mass m and the mean square velocity ⟨v²⟩ of a disc. Each
+//! collision dissipates (1 − e²) T on average: the relative velocity along the normal has the variance 2T/m, its mean
+//! square over collisions is 4T/m, and the energy ¼ m (1 − e²) times this square is lost. A disc collides ω = 2√π n d χ
+//! √(T/m) times per second (Enskog), with n discs of diameter d per area, and the pair correlation at contact χ = (1 −
+//! 7φ/16)/(1 − φ)² at the solid fraction φ (D. Henderson 1975). Two discs share a collision. For N discs with the
+//! energy E = N T, dE/dt = −N √π n d χ (1 − e²) T √(T/m).
 //!
 //! The walls have the same restitution as the discs. A unit length of wall is hit n_w √(T/2πm) times per second. Here
 //! n_w = n (1 + 2φχ) is the density of discs at the wall, which bears the pressure. For discs that hit the wall with

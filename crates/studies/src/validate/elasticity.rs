@@ -91,7 +91,7 @@ fn wave_number(discs: usize) -> f64 {
     FRAC_PI_2 / discs as f64
 }
 
-/// Returns the number of steps per period of the longest wave, as predicted from q.
+/// Returns the number of steps per period of the longest wave, as predicted from the coefficient q of diffusion.
 fn period(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     let shrinkage = (-variant.q * f64::from(sweeps) * wave_number(discs).powi(2)).exp();
     TAU / shrinkage.sqrt().acos()

@@ -59,7 +59,7 @@ const STRAINS: [f64; 2] = [1.5, 3.0];
 /// Number of decay lengths of a transient by which a layer is sheared before the measurement, in addition to the least
 /// shear. The decay length is computed with [`SLOWEST`].
 const TIMES_TO_STEADY: f64 = 3.0;
-/// Friction T/N of a layer in which a transient decays slowly.
+/// Friction T/N of a layer in which a transient decays slowly: tangential force divided by normal force.
 const SLOWEST: f64 = 0.4;
 const MOMENTS: u32 = 250;
 /// Number of moments from one measurement of the solid fraction to the next.
@@ -140,7 +140,8 @@ impl ShearedLayer {
         area / (DENSE * f64::from(self.cell.wide))
     }
 
-    /// Returns the nominal shear rate γ̇, 1/s, from the inertial number and √(m/P) = √(d/(g P)), where P is in m g/d.
+    /// Returns the nominal shear rate γ̇ = I/√(m/P), 1/s, with the inertial number I, the mass m of a grain and the
+    /// pressure P. √(m/P) = √(d/(g P)) if P is in m g/d, with diameter d and gravity g.
     fn rate(&self) -> f64 {
         self.kind.inertial / inertial_secs()
     }

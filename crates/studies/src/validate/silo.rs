@@ -36,7 +36,8 @@ const RELEASE_SECS: f64 = 0.02;
 /// Width of the orifice in the test with stronger gravity, in diameters, and the factor of gravity.
 const OF_GRAVITY: f64 = 8.0;
 const TIMES_GRAVITY: f64 = 4.0;
-/// Value of the constant k in W − k d that the test of the exponent assumes.
+/// Value of the constant k that the test of the exponent assumes in the law Q ∝ (W − k d)^{3/2}, with the discharge
+/// rate Q, the width W of the orifice and the diameter d.
 const TAKEN_K: f64 = 1.4;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {

@@ -10,7 +10,7 @@ use crate::solver::{Method, SolverSettings};
 /// Largest number of sweeps per step if a step is solved to a residual.
 const MOST_SWEEPS: u32 = 1_000;
 
-/// Default efforts of a method other than `auto`.
+/// Default efforts (numbers of sweeps per step) of a solver method other than `auto`.
 const UNASKED: [SolveBudget; 2] = [SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -32,14 +32,14 @@ use crate::world::ParameterChanges;
 const MOST_SWEEPS: u32 = 5_000;
 /// Speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step.
 const THRESHOLD: f64 = 2.0;
-/// Time step of the references with the smallest error of the time step, s.
+/// Smallest time step of the reference runs, s. Its references have the smallest error due to the time step.
 const FINEST_SECS: f64 = 1e-4;
 const DURATION_SECS: f64 = 1.0;
 /// Solver method of the references, and the residuals to which it solves each step. References with the second residual
 /// only serve to measure the floor.
 const REFERENCE: Method = Method::Newton;
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
-/// Largest slump at which a pile counts as one that holds.
+/// Slump below which a pile counts as stable.
 const HOLDS: f64 = 0.1;
 /// Contact law under which the floor (the difference between two references) is measured.
 const FLOOR_LAW: Stepper = Stepper::Moreau;
@@ -329,7 +329,7 @@ struct SimulatedPoint<'a> {
     /// Mean of |slump − slump of the reference|, with the reference at the same time step, and at the smallest time
     /// step.
     errors: [Mean; 2],
-    /// Fraction of piles with the same outcome (the pile holds or slumps) as the reference at the same time step.
+    /// Fraction of piles with the same outcome (stable or not) as the reference at the same time step.
     verdicts: f64,
 }
 
