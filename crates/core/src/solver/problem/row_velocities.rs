@@ -55,7 +55,7 @@ fn for_each_row_of<M: Model>(
         let row = &problem.rows.fixed[number];
         let [now, before, free] =
             [&bodies.now, &bodies.before, &bodies.free].map(|bodies| row.velocity(bodies));
-        // Without contacts, a driven wall would have another speed, too.
+        // Without contacts a driven wall, too, would have another speed, and v^free is relative to that speed.
         let free = problem.free_part(number, row, free).unwrap_or(free);
         visit(number, row, RowVelocities { now, before, free });
     }
