@@ -97,8 +97,8 @@ pub(crate) struct Variant {
     pub settings: Settings,
     /// Pile that replaces the grains of the scene; `None` if the grains are not changed.
     pub pile: Option<NewPile>,
-    /// Expected computing time of a run, divided by that of the unchanged scene. It is used until a run has been
-    /// measured.
+    /// Expected computing time of a run, divided by the time of a run of the unchanged scene. The expectation is used
+    /// until a run has been measured.
     pub cost: f64,
 }
 

@@ -46,8 +46,8 @@ pub(super) struct Limits {
     pub cost_secs: f64,
     /// Requested half-width of every confidence interval, in the unit of the quantity; `None` for a tenth of the value.
     pub within: Option<f64>,
-    /// Number of parts into which the budget is divided, for example for several machines. All parts together have this
-    /// many times the initial states of one part.
+    /// Number of parts into which the error budget is divided, for example for several machines. All parts together
+    /// have this many times the initial states of one part.
     pub parts: usize,
     /// True to show a progress bar on stderr.
     pub shows_progress: bool,
@@ -61,7 +61,7 @@ pub(crate) enum BudgetEnd {
     Within,
     /// The computing time is used up.
     Cost,
-    /// The function that watches the computation stopped it.
+    /// The function that watches the computation stopped the budget.
     Stopped,
     /// The runs of the unchanged scene gave no value.
     Failed,
@@ -75,8 +75,8 @@ pub(super) struct Runs {
     pub quantities: usize,
     /// Requested half-width of the intervals of each quantity, in the unit of the quantity.
     pub within: Vec<f64>,
-    /// Expected computing time of a run of each series, divided by that of the first series. It is used until a run of
-    /// the series has been measured.
+    /// Expected computing time of a run of each series, divided by the time of a run of the first series. The
+    /// expectation is used until a run of the series has been measured.
     costs: Vec<f64>,
 }
 

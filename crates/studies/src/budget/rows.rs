@@ -20,7 +20,8 @@ pub(crate) struct CauseRow {
     pub adds: Option<[f64; 3]>,
     /// Fraction of the steps of the changed scene that missed their tolerance.
     pub unsolved: f64,
-    /// Computing time divided by that of the unchanged scene. It differs between machines and repetitions.
+    /// Computing time divided by the computing time of the unchanged scene. The ratio differs between machines and
+    /// repetitions.
     pub cost: Option<f64>,
     /// Reason why the effect is not known; `None` if it is known.
     pub failure: Option<String>,
@@ -74,8 +75,9 @@ pub(crate) struct QuantityBudget {
     pub itself: Option<f64>,
     /// Effect on the quantity of letting the time step Δt go to 0, and both ends of its interval, if it is known.
     pub limit_adds: Option<[f64; 3]>,
-    /// One entry for each of the time steps Δt, Δt/2 and Δt/4: its computing time divided by that of Δt, and the
-    /// difference between its value of the quantity and the value at Δt/8, with both ends of the interval.
+    /// One entry for each of the time steps Δt, Δt/2 and Δt/4. An entry contains the computing time divided by the
+    /// computing time of Δt, and the difference between the quantity at this time step and at Δt/8, with both ends of
+    /// its interval.
     pub left_by_time_step: Vec<(f64, [f64; 3])>,
     pub trust: Trust,
     pub answer: String,
@@ -184,8 +186,9 @@ impl QuantityBudget {
 
     pub(super) fn judged(&self) -> Trust {
         let of = |share: Share| self.causes.iter().filter(move |row| row.share == share);
-        // Of all time steps only the smallest counts, because it shows most of the effect of Δt. A scene that fails
-        // under another contact law does not put its own law in doubt, so such a row does not count.
+        // Of all time steps only the smallest counts, because it shows most of the effect of Δt. If the scene fails
+        // under another contact law, this does not put the scene's own law in doubt, so the row of the other law does
+        // not count.
         let smallest = self.smallest_step().map(|row| &row.changed);
         let counts = |row: &&CauseRow| match row.kind {
             Cause::TimeStep => Some(&row.changed) == smallest,

@@ -109,7 +109,7 @@ impl Claim {
 /// the 5 % level is then known to ± 1.4 % (95 % interval).
 const SHUFFLES: usize = 1000;
 
-/// Runs that differ in one number only: pairs of this number and the result of the run.
+/// A group of runs that differ in one number only: for each run, this number and the result of the run.
 pub(super) type Alike = Vec<(f64, f64)>;
 
 /// Returns the fraction of shuffles of all groups after which the claim `holds`. After each shuffle, the effect

@@ -87,7 +87,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
 }
 
-/// Returns lines of constant cohesive time with their labels, clipped to the axes.
+/// Returns lines of constant cohesive time Bond·Δt/√(d/g) with their labels, clipped to the axes.
 fn contours(most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
     let mut layers = Vec::new();
     for time in CONTOURS {

@@ -38,7 +38,8 @@ use crate::solver::METHODS;
 const DURATION_SECS: f64 = 0.1;
 /// Distance of sinking, or overlap, above which a run counts as a failure, in diameters d.
 const COUNTS: f64 = 0.01;
-/// Amplitude of the slowest mode of Gauss–Seidel at the top of a tall column.
+/// Amplitude A of the slowest mode of Gauss–Seidel at the top of a tall column, dimensionless. The velocity of sinking
+/// is proportional to A.
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
 /// Displacement above which a grain counts as lost, in diameters d.
 const LOST: f64 = 1.0;

@@ -15,7 +15,7 @@ use crate::world::{Boundary, Parameters};
 
 // Sliding friction must not lift a disc, and must follow a change of pressure at once.
 
-/// Duration of the test of a sliding disc, divided by the time in which friction stops the disc.
+/// Duration of the test of a sliding disc, as a multiple of the time in which friction stops the disc.
 const WATCHED: f64 = 1.2;
 /// Duration of the blow on two discs, s.
 const BLOW_SECS: f64 = 0.1;
@@ -42,9 +42,9 @@ pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     Ok(off_level.max(beyond / right))
 }
 
-/// Returns the larger of two errors of two discs that slide on the floor and are hit from above. One error is that of
-/// their position along the floor, in diameters, due to friction that does not follow the pressure at the same time.
-/// The other error is that of their final speed, relative to the loss of speed by the blow.
+/// Returns the larger of two errors of two discs that slide on the floor and are hit from above. The first is the error
+/// of their position along the floor, in diameters, due to friction that does not follow the pressure at the same time.
+/// The second is the error of their final speed, relative to the loss of speed by the blow.
 pub(super) fn blow(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::blow();
     scene.parameters.time_step_secs = trial.level;
@@ -80,10 +80,10 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
 const PHASES: u32 = 10;
 const AFTER_SECS: f64 = 0.1;
 
-/// Returns the largest error of a bouncing disc. The first error is that of the height of the first bounce, relative to
-/// the height of the fall. For restitution ρ < 1 the second error is the remaining speed after all bounces, relative to
-/// the speed of the first impact. For ρ = 1 it is the relative error of the energy after ten times the duration of the
-/// fall.
+/// Returns the largest error of a bouncing disc. The first error is the error of the height of the first bounce,
+/// relative to the height of the fall. For restitution ρ < 1 the second error is the remaining speed after all bounces,
+/// relative to the speed of the first impact. For ρ = 1 the second error is the relative error of the energy after ten
+/// times the duration of the fall.
 pub(super) fn bounce(trial: &Trial) -> Result<f64> {
     let restitution = trial.level;
     let scene = scenes::bounce(restitution);

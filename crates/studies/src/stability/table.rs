@@ -129,7 +129,8 @@ impl StabilityTable {
         Ok(Self { cells: cells.map_err(|error| Error::file("table.csv", error))? })
     }
 
-    /// Returns the results of a variant in a stability test, by increasing harm of the driving parameter.
+    /// Returns the results of a variant in a stability test, one per value of the driving parameter, from harmless to
+    /// harmful.
     fn levels(&self, challenge: &Challenge, variant: &Change) -> Vec<&StabilityCell> {
         let of_both =
             |cell: &&StabilityCell| cell.scene == challenge.name && cell.method == variant.name;

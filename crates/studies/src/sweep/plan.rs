@@ -44,7 +44,7 @@ struct StudyFile {
     quick: Quick,
 }
 
-/// Settings that replace those of the study in a quick pass.
+/// Settings that replace the settings of the study in a quick pass.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Quick {
@@ -70,7 +70,7 @@ pub struct Study {
     pub name: String,
     /// Identity of the study: a hash of the keys of all runs.
     pub fingerprint: String,
-    /// True if the runs are those of a quick pass that differs from the full pass.
+    /// True if the runs belong to a quick pass that differs from the full pass.
     pub is_quick_pass: bool,
     /// Settings of the rows that each run writes over time, if any.
     pub series: Option<SeriesSettings>,

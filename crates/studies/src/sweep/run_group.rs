@@ -17,10 +17,10 @@ pub(super) struct RunGroup {
     /// Mean slump, and half its 95 % interval. Both are `null` if no run is valid; half the interval is also `null` for
     /// a single run.
     pub slump: [f64; 2],
-    /// Effects of the varied settings on the slump, by name of the setting; of settings that vary together, by the
-    /// first name. An effect is the difference between this group and the group that has the first value of the setting
-    /// and otherwise the same settings. It consists of the mean over the initial states that both groups share, and
-    /// half its 95 % interval.
+    /// Effects of the varied settings on the slump. The key is the name of the setting, or the first name if several
+    /// settings vary together. An effect is the difference of the slump between this group and the group that has the
+    /// first value of the setting and otherwise the same settings: the mean over the initial states that both groups
+    /// share, and half its 95 % interval.
     pub less_first: BTreeMap<String, [f64; 2]>,
     /// Fraction of steps that missed their tolerance.
     pub unsolved: f64,

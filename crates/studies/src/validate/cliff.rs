@@ -75,7 +75,8 @@ fn standing_from(of_seed: &Measurements) -> f64 {
     (falls * runs[first].at("bond")).sqrt()
 }
 
-/// Published values, one row for each quantity that [`judge`] measures: name | band and value | source.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     rank correlation of run-out and Bond | -1 -1 -0.7 | recalled: Abramian et al. 2020, Gans et al. 2023: it falls
     rank correlation of roughness and Bond, of those that fall | 0.5 1 1 \

@@ -198,9 +198,9 @@ impl GasRun {
     }
 }
 
-/// Published values, one row for each quantity that [`judge`] measures: name | band and value | source. Times have the
-/// same bands as Haff's law. The factors have wider bands, because only a tenth of the collisions of 2,000 discs
-/// determines them.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source. Times have the same bands as Haff's law. The
+/// factors have wider bands, because only a tenth of the collisions of 2,000 discs determines them.
 const PUBLISHED: &str = "
     range: t₀ over that of kinetic theory, short Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond
     range: t₀ over that of kinetic theory, long Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond

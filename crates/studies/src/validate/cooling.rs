@@ -134,8 +134,8 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
         points.push((simulation.time_secs(), simulation.observables().kinetic_energy / start));
     }
     let [exponent, _] = cooling_law(&points);
-    // The initial energy E is that of the velocities that were drawn, not that of the distribution from which they were
-    // drawn. The cooling time τ scales with 1/√E.
+    // The initial energy E is computed from the velocities that were drawn, because it differs from the mean energy of
+    // their distribution. The cooling time τ scales with 1/√E.
     let mass: f64 = run.simulation.world().grains.masses.iter().sum();
     let expected = tau * THERMAL_SPEED / (2.0 * start / mass).sqrt();
     // By Haff's law 1/√T = (1 + t/τ)/√T₀, which is a straight line in the time t.
@@ -143,7 +143,8 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
     Ok(run.with([("exponent", exponent), ("time", 1.0 / slope(&roots) / expected)]))
 }
 
-/// Published values, one row for each quantity that [`judge`] measures: name | band and value | source.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     exponent p of T = T₀ (1 + t/τ)^−p | 1.85 2 2.15 | exact: Haff 1983
     τ over that of kinetic theory | 0.9 1 1.1 | recalled: Enskog's collision rate, Henderson 1975, walls included

@@ -40,9 +40,10 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Time step, s. The number of steps per period does not depend on it. With a smaller value, the row sags less.
+/// Time step, s. The number of steps per period does not depend on the time step. With a smaller value, the row sags
+/// less.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// Gap below which discs touch, in diameters.
+/// Gap below which discs count as touching, in diameters.
 const TOUCHES_WITHIN: f64 = 1e-2;
 /// Number of periods to wait, until shorter waves have decayed, and number of periods to observe.
 const PERIODS: [f64; 2] = [1.0, 3.0];
@@ -135,7 +136,8 @@ fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings
     })
 }
 
-/// Published values, one row for each quantity that [`judge`] measures: name | band and value | source.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     q of jacobi, from the period | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
     q of jacobi, from the damping | 0.245 0.25 0.255 | derived: half of ½ by mass splitting

@@ -115,7 +115,8 @@ fn tail(bearing: &[&ContactState]) -> f64 {
     1.0 / mean(&beyond).mean
 }
 
-/// Published values, one row for each quantity that [`judge`] measures: name | band and value | source.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     φ without friction | 0.82 0.84 0.86 | read: reported for nearly monodisperse discs
     Z without friction | 3.9 4 4.1 | read: 2D = 4: isostatic

@@ -91,7 +91,8 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
     Ok(run.with([("angle", angle.to_degrees())]))
 }
 
-/// Published values, one row for each quantity that [`judge`] measures: name | band and value | source.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     angle without cohesion, drum, degrees | 18 25 32 | recalled: slopes of discs with μ = 0.5: 20° … 30°
     rank correlation of angle and Bond, drum | 0.5 1 1 | recalled: it grows with cohesion

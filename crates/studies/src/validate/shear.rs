@@ -237,7 +237,8 @@ fn rate(moment: &Moment) -> f64 {
     slope(&points)
 }
 
-/// Published values, one row for each quantity that [`judge`] measures: name | band and value | source.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     T/N, extended to I = 0 | 0.2 0.25 0.32 | recalled: da Cruz et al. 2005: 0.25
     slope of T/N in I | 0.6 1.1 1.6 | recalled: da Cruz et al. 2005: 1.1

@@ -48,8 +48,8 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &kinds)
 }
 
-/// Published values, one row for each quantity that [`judge`] measures, in the order of [`BOUNDS`]: name | band and
-/// value | source.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source. The rows are in the order of [`BOUNDS`].
 const PUBLISHED: &str = "
     T/N over that without cohesion, shifted cone, tolerance 0 \
         | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it
