@@ -18,12 +18,14 @@ use crate::setting::{About, Changes, Kind, Value};
 use crate::sim::Settings;
 
 impl Config {
-    /// Returns the names of all options of a request, as they appear on the command line and in study files.
+    /// Returns the names of all options with which a run can be requested, as they appear on the command line and in
+    /// study files.
     pub fn names() -> Vec<String> {
         Self::options().into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Returns the names of all options of a request, each with its line in the help of the command line.
+    /// Returns the names of all options with which a run can be requested, each with its line in the help of the
+    /// command line.
     pub fn options() -> Vec<(String, String)> {
         let command = Self::augment_args(Command::new("config"));
         let help = |option: &Arg| option.get_help().map(ToString::to_string).unwrap_or_default();
@@ -149,7 +151,7 @@ impl Serialize for Config {
     }
 }
 
-/// A request of which only the given settings are written, without the source of the scene.
+/// A request to be written without the source of its scene. Only the settings that the request gives are written.
 struct GivenSettings<'a>(&'a Config);
 
 impl Serialize for GivenSettings<'_> {
@@ -206,7 +208,7 @@ impl<'de> Visitor<'de> for ConfigVisitor {
 /// Describes an error in a command line in one sentence that says which values are allowed. The message of clap, the
 /// parser of `command`, is not enough, because it adds usage and hints and leaves out the allowed values.
 pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
-    // Before this call clap cannot display the arguments.
+    // The parser clap can display arguments only after this call.
     command.build();
     let said = |kind: ContextKind| match error.get(kind) {
         Some(ContextValue::String(text)) => text.clone(),
@@ -233,7 +235,7 @@ pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
                 none if none.is_empty() => String::new(),
                 near => format!(", such as {near}"),
             };
-            // The options in links and studies are only a part of those of the command line.
+            // Links and studies have only a part of the options of the command line.
             let allowed = match command.is_no_binary_name_set() {
                 true => "a setting, or say where a scene comes from",
                 false => "an option or a command that --help lists",

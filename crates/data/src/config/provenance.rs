@@ -23,7 +23,7 @@ impl Config {
 
     /// Returns the command-line options for the source of the scene.
     fn source_words(&self) -> Vec<String> {
-        // Only a path that is not Unicode cannot be written, and such a path is refused when it is read.
+        // Writing fails only for a path that is not Unicode. Such a path is refused when it is read.
         let Ok(Json::Object(fields)) = serde_json::to_value(&self.source) else {
             return Vec::new();
         };

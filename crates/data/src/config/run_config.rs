@@ -219,9 +219,9 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// Makes the scene with the changes and checks it, but does not let a new pile settle: the scene has the grains of
-    /// the built-in scene, or the grains of the new pile at their initial positions. This takes little time, so that a
-    /// wrong value is reported before long work begins.
+    /// Makes the requested scene with the requested changes and checks it, but does not let a new pile settle: the
+    /// scene has the grains of the built-in scene, or the grains of the new pile at their initial positions. This takes
+    /// little time, so that a wrong value is reported before long work begins.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
@@ -229,8 +229,8 @@ impl Config {
         self.change(&self.base_scene()?)
     }
 
-    /// Makes the scene with the changes and checks it. If a new pile must settle, this takes a while: `progress` is
-    /// called repeatedly and stops the work by returning false.
+    /// Makes the requested scene with the requested changes and checks it. If a new pile must settle, this takes a
+    /// while: `progress` is called repeatedly and stops the work by returning false.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read. Making
@@ -255,8 +255,8 @@ impl Config {
         }
     }
 
-    /// Makes the scene with the changes and checks it. Its new pile has the grains `settled`, which have already
-    /// settled.
+    /// Makes the requested scene with the requested changes and checks it. The new pile of the scene has the grains
+    /// `settled`, which have already settled.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -264,8 +264,8 @@ impl Config {
         self.settled_on(self.base_scene()?, settled)
     }
 
-    /// Makes a pile with the changes and checks it. Its initial state is `discs`, as if the option `initial` named a
-    /// file with these discs.
+    /// Makes a pile with the requested changes and checks it. Its initial state is `discs`, as if the option `initial`
+    /// named a file with these discs.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -286,8 +286,8 @@ impl Config {
         Ok(self.base_scene()?.new_pile)
     }
 
-    /// Makes the scene that the request names, or that starts from the initial grains of the request, without the other
-    /// changes.
+    /// Makes the scene that the request names, or the scene that starts from the initial grains of the request, without
+    /// the other requested changes.
     ///
     /// # Errors
     /// As [`Config::without_settling`].

@@ -10,7 +10,7 @@ use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, Observables, Stepper};
 
-/// Returns the tables to which each frame adds rows, without rows.
+/// Returns empty tables with the columns of the tables to which each recorded frame adds rows.
 pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     let histograms = histogram_table(&Observables::default(), &[]);
     let contacts = Table::new(CONTACTS, CONTACT_COLUMNS, &[], &[]);
@@ -19,7 +19,7 @@ pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     [empty_grains(), contacts, means::no_pairs(), walls, measures, histograms]
 }
 
-/// Returns all tables of a recording, without rows.
+/// Returns empty tables with the columns of all tables of a recording.
 pub(super) fn empty_tables() -> impl Iterator<Item = Table> {
     empty_tables_of_frames().into_iter().chain([Table::of_steps(&[])])
 }

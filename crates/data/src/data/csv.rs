@@ -78,7 +78,7 @@ pub(super) struct TextTable {
     rows: Vec<u8>,
 }
 
-/// Rows that remain in a table: their number, and the last step.
+/// Number of the rows that remain in a table, and the step of the last row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KeptRows {
     pub rows: u64,
@@ -126,8 +126,8 @@ impl TextTable {
         self.begun()?.sync()
     }
 
-    /// Removes the rows after the step `step` (all rows if it is `None`), and an incomplete row at the end. Returns the
-    /// rows that remain.
+    /// Removes the rows after the step `step` (all rows if `step` is `None`), and an incomplete row at the end. Returns
+    /// the rows that remain.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
         let (kept, whole) = self.rows_there(step, u64::MAX)?;

@@ -31,7 +31,7 @@ pub struct Frame {
     pub contacts: Table,
     /// Table of pairs: one row per pair of bodies that transmitted a force since the previous frame.
     pub pairs: Table,
-    /// Table of walls: one row per wall.
+    /// Table of walls: one row per wall. A wall is a rigid body made of boundaries and fixed discs.
     pub walls: Table,
     /// Table of measures: one row for the whole pile.
     pub measures: Table,
@@ -40,8 +40,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Makes the tables of a moment. `number` is the number of earlier frames, and `sums` are the sums of the forces of
-    /// pairs since the previous frame.
+    /// Makes the tables of a moment. `number` is the number of earlier frames, and `sums` are the sums of the contact
+    /// forces of each pair of bodies since the previous frame.
     pub fn new(number: u64, moment: Moment, sums: &ForceSums) -> Self {
         let MomentMeasures { pile, grains, histograms } = measure(&moment);
         let now = &moment.observables;
@@ -115,7 +115,7 @@ pub(super) trait Format: Send {
         Ok(())
     }
 
-    /// Makes all added data visible to readers of the files. This is called after a frame, or after several frames if
+    /// Makes all added data visible to readers of the files. It is called after each frame, or after several frames if
     /// the run is faster than the disk.
     fn flush(&mut self) -> Result<()> {
         Ok(())

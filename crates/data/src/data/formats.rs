@@ -1,4 +1,4 @@
-//! Lists all file formats of recordings: the formats that this build can write, and how each starts.
+//! Lists the file formats of recordings that this build can write, and starts them.
 
 use std::path::Path;
 

@@ -48,7 +48,7 @@ const GRAIN_COLUMNS: [(&str, &str); 10] = [
     ("vx", "vx"),
     ("vy", "vy"),
     ("omegaz", "omega"),
-    // The name differs, because OVITO expects whole numbers in `coordination`, but fixed discs have no value.
+    // Not `coordination`: OVITO expects whole numbers in a column of this name, but fixed discs have no value.
     ("coordination_number", "coordination"),
 ];
 /// First columns of the dump of contacts, as (name in the dump, name in Slump). All other columns follow with their own
@@ -63,9 +63,9 @@ const IN_WORDS: &str = "element";
 const ELEMENTS: [&str; 3] = ["H", "He", "Li"];
 /// Beginning of the header line above the number of rows of a frame.
 const COUNT: &str = "ITEM: NUMBER OF ";
-/// The word for grains in header lines.
+/// The word for grains in the header lines of a dump.
 const ATOMS: &str = LABELS[0];
-/// The words for rows of grains, contacts and walls in header lines.
+/// The words for rows of grains, contacts and walls in the header lines of a dump.
 const LABELS: [&str; 3] = ["ATOMS", "BONDS", "ENTRIES"];
 /// The lowest number of a particle type in LAMMPS.
 const FIRST_TYPE: u32 = 1;

@@ -20,8 +20,8 @@ pub(super) struct Means {
 }
 
 impl Means {
-    /// Computes the means from the sums of forces since the previous frame. `area` is the area of the pile at the
-    /// moment, m².
+    /// Computes the means. `sums` are the sums of contact forces since the previous frame, and `area` is the area of
+    /// the pile at the moment, m².
     pub(super) fn of(
         sums: &ForceSums,
         moment: &Moment,

@@ -55,7 +55,7 @@ pub struct Recording {
     schedule: Option<FrameSchedule>,
     /// The writing thread; `None` once the recording has ended, also after an error.
     writer: Option<WriterThread>,
-    /// Sums of the forces of pairs of bodies in contact since the last frame.
+    /// Sums of the contact forces of each pair of bodies since the last frame.
     sums: ForceSums,
 }
 
@@ -156,7 +156,7 @@ impl Recording {
         Ok(Self { folder, rows, frames, last_step, schedule: None, writer, sums })
     }
 
-    /// Returns the sums of the forces of pairs of bodies in contact since the last frame. A run that resumes from a
+    /// Returns the sums of the contact forces of each pair of bodies since the last frame. A run that resumes from a
     /// saved state passes these sums to [`Recording::with_sums`].
     pub fn sums(&self) -> &ForceSums {
         &self.sums
@@ -288,7 +288,7 @@ impl Drop for Recording {
 
 enum RecordingMessage {
     Steps(Vec<Observables>),
-    /// A frame: the number of earlier frames, the moment, and the sums of forces since the previous frame.
+    /// A frame: the number of earlier frames, the moment, and the sums of contact forces since the previous frame.
     Frame(u64, Box<(Moment, ForceSums)>),
     /// A request to write all earlier messages to the files and then to send the extent of the recording.
     Flush(SyncSender<RecordingMark>),

@@ -232,7 +232,7 @@ impl Table {
         }
     }
 
-    /// Removes the rows after the step `step`, or all rows if it is `None`.
+    /// Removes the rows after the step `step`, or all rows if `step` is `None`.
     pub(super) fn keep_until(&mut self, step: Option<u64>) {
         let rows = self.steps().partition_point(|&there| Some(there) <= step);
         self.truncate(rows);

@@ -41,7 +41,7 @@ const LARGEST_POWER: f64 = 3.0;
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {
-    /// Area of each grain's cell, m²; NaN for a grain that does not count, such as a lost grain.
+    /// Area of each grain's cell, m²; NaN for a lost grain.
     pub areas: Vec<f64>,
     /// Area of each grain's disc divided by the area of its cell; NaN if the cell is not closed.
     pub solid_fractions: Vec<f64>,
@@ -118,8 +118,8 @@ impl PowerCells {
     }
 }
 
-/// Returns the indices of the grains that count, and the discs that have cells: first these grains, then the fixed
-/// discs.
+/// Returns the indices of the grains that are not lost, and the discs that have cells: first these grains, then the
+/// fixed discs.
 fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Site>) {
     let (indices, grains): (Vec<usize>, Vec<&GrainState>) = network.grains().unzip();
     let mean_radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;

@@ -230,9 +230,9 @@ impl GridAxis {
         Self { wraps: false, origin: 0.0, side, first: first as i64, cells }
     }
 
-    /// Returns, for each cell over which a point at `place` (m) is smeared, the cell's index, its weight, and the
-    /// number of periods by which the cell is beyond the upper border. The weights add up to 1, unless a part of the
-    /// smeared point is outside the grid.
+    /// Returns, for each grid cell over which a point at `place` (m) is smeared, the cell's index, its weight, and the
+    /// number of periods by which the cell is beyond the upper periodic border. The weights add up to 1, unless a part
+    /// of the smeared point is outside the grid.
     fn shares(&self, place: f64, width: f64) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         let knots = knots(width);
         let at = move |cell: f64| self.origin + cell * self.side;
@@ -282,8 +282,8 @@ struct Smoothing {
 }
 
 impl Smoothing {
-    /// Calls `to` for each cell over which a point at `place` (m) is smeared, with the cell's index, its weight, and
-    /// the number of periods by which the cell lies above the periodic cell of the scene.
+    /// Calls `to` for each grid cell over which a point at `place` (m) is smeared, with the cell's index, its weight,
+    /// and the number of periods by which the smeared part lies above the periodic cell of the scene.
     fn share(&self, place: DVec2, mut to: impl FnMut(usize, f64, f64)) {
         let [along_x, along_y] = &self.axes;
         let in_row = |above: f64| {

@@ -36,7 +36,7 @@ pub struct Histogram {
     /// Edges of the bins. Bin k reaches from `edges[k]`, which belongs to the bin, to `edges[k + 1]`. The first and
     /// last edges may be infinite.
     pub edges: Vec<f64>,
-    /// Number of values in each bin.
+    /// Number of values of the quantity in each bin.
     pub counts: Vec<u64>,
 }
 

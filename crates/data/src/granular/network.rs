@@ -11,7 +11,7 @@ use crate::sim::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 /// errors of the solver count as forces. If it is larger, weak contacts do not count.
 const BEARS_FROM: f64 = 1e-6;
 
-/// Network of the grains that count and of their contacts.
+/// Network of contacts between the grains that are not lost. Lost grains went through a wall or left the world.
 pub(super) struct Network<'a> {
     pub grains: &'a [GrainState],
     /// For each grain, true if the grain counts: it is not lost and its position is finite. `links` has only indices of
@@ -20,7 +20,8 @@ pub(super) struct Network<'a> {
     pub links: Vec<NetworkContact>,
 }
 
-/// A contact between grains that count, or of such a grain with a wall or fixed disc. Lengths are in m and forces in N.
+/// A contact of a grain that is not lost with another such grain, a wall or a fixed disc. Lengths are in m and forces
+/// in N.
 pub(super) struct NetworkContact {
     pub grain: usize,
     /// Index of grain j; `None` if grain i touches a wall or a fixed disc.
@@ -77,7 +78,7 @@ impl<'a> Network<'a> {
         Self { grains, counts, links }
     }
 
-    /// Iterates over the grains that count, with their indices.
+    /// Iterates over the grains that are not lost and have finite positions, with their indices.
     pub(super) fn grains(&self) -> impl Iterator<Item = (usize, &'a GrainState)> {
         let counted = self.grains.iter().zip(&self.counts).enumerate();
         counted.filter_map(|(index, (grain, &counts))| counts.then_some((index, grain)))
@@ -116,7 +117,8 @@ fn link(contact: &ContactState, radius: f64) -> NetworkContact {
     }
 }
 
-/// Least number of force-bearing contacts of a grain that transmits forces. A grain with fewer is a rattler.
+/// Least number of force-bearing contacts of a grain that transmits forces. A grain with fewer such contacts is a
+/// rattler.
 const HELD_BY: u32 = 2;
 
 /// Numbers of contacts of the grains, and the rattlers: grains that do not transmit forces.
@@ -126,7 +128,7 @@ const HELD_BY: u32 = 2;
 /// network, in which walls and fixed discs support grains like any other body. Under gravity this also removes dead
 /// ends, such as a single column of grains.
 pub(super) struct Coordination {
-    /// Number of contacts of each grain; 0 for a grain that does not count, such as a lost grain.
+    /// Number of contacts of each grain; 0 for a lost grain, or for a grain without a finite position.
     pub of_grains: Vec<u32>,
     pub rattlers: Vec<bool>,
     /// Mean number of contacts per grain.

@@ -15,8 +15,9 @@ use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
-/// Largest accepted relative difference between W, q and c₀ in a file and the values computed from its bodies. It
-/// allows for rounding, and for files whose numbers were cut to ten digits.
+/// Largest accepted relative difference between the numbers in a problem file (matrix W, velocities q, cohesion
+/// impulses c₀) and the values computed from its bodies. It allows for rounding, and for files whose numbers were cut
+/// to ten digits.
 pub(super) const DISAGREEMENT: f64 = 1e-9;
 
 /// Discs and their contacts, from which the matrix W, the velocities q and the cohesion impulses c₀ were computed. Each
@@ -43,17 +44,17 @@ pub struct BodyForm {
     pub pair: Vec<(u32, Option<u32>)>,
     /// Unit normal n of each contact, pointing from body j to body i.
     pub normal: Vec<[f64; 2]>,
-    /// Additional term of q for each contact, m/s. It comes from restitution, or it is gap/Δt if the contact has a gap
-    /// within the touch tolerance, which may close.
+    /// Additional term of each contact in its velocity q without contact impulses, m/s. It comes from restitution, or
+    /// it is gap/Δt if the contact has a gap within the touch tolerance, which may close.
     pub restitution_velocity: Vec<f64>,
-    /// Speed of the fixed body's surface along the tangent t (n turned by +90°) at each contact, m/s; 0 for a contact
-    /// between two bodies. The list is empty if no fixed body moves.
+    /// Speed of the fixed body's surface along the tangent (the normal turned by +90°) at each contact, m/s; 0 for a
+    /// contact between two bodies. The list is empty if no fixed body moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub surface_speed: Vec<f64>,
 }
 
 impl BodyForm {
-    /// Checks the bodies, and that the file's W, q and c₀ follow from the bodies.
+    /// Checks the bodies, and that the file's matrix W, velocities q and cohesion impulses c₀ follow from the bodies.
     pub(super) fn check(&self, file: &ProblemFile) -> Result<()> {
         let (bodies, contacts) = (self.mass.len(), file.nc);
         let lengths = [
@@ -106,8 +107,8 @@ impl BodyForm {
         with_model!(self.parts(file)?, M => self.check_numbers::<M>(file))
     }
 
-    /// Checks that the numbers W, q and c₀ of the file agree with those computed from the bodies. Without friction the
-    /// tangential rows have no effect and need not agree.
+    /// Checks that the file's matrix W, velocities q and cohesion impulses c₀ agree with the values computed from the
+    /// bodies. Without friction the tangential rows have no effect and need not agree.
     fn check_numbers<M: Model>(&self, file: &ProblemFile) -> Result<()> {
         let problem = self.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;

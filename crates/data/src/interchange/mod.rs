@@ -65,7 +65,7 @@ pub struct ProblemFile {
     /// Initial guess of the contact impulses: (P_n, P_t) of each contact, N·s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Vec<f64>>,
-    /// The bodies from which W and q were computed.
+    /// The bodies from which the matrix W and the velocities q were computed; `None` if only W and q are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bodies: Option<BodyForm>,
     /// Matrix W, which maps contact impulses to changes of relative velocities, 1/kg.

@@ -34,8 +34,8 @@ pub struct Solution {
     /// True if the method failed because it made no more progress, so that more sweeps would not help. False if the
     /// method was stopped too early.
     pub stalled: bool,
-    /// Residual of the contact laws, dimensionless, computed from the impulses `r` and the file's W and q: the same
-    /// measure for all methods.
+    /// Residual of the contact laws, dimensionless: the same measure for all methods. It is computed from the impulses
+    /// `r` and the file's matrix W and velocities q.
     #[serde(with = "number")]
     pub residual: f64,
     /// Relative velocity (v_n, v_t) of each contact at the end of the step, m/s: W r + q, which includes restitution.

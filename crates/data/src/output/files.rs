@@ -152,7 +152,7 @@ impl Destination {
                 let permissions = there.filter(Metadata::is_file).map(|there| there.permissions());
                 return Ok(Self { path: path_there, permissions, is_special });
             };
-            // The links in these folders to open files do not contain a path that can be followed; only the system can
+            // Links in /proc and /dev to open files do not contain a path that can be followed; only the system can
             // follow them.
             if path_there.starts_with("/proc") || path_there.starts_with("/dev") {
                 return Ok(Self { path: path_there, permissions: None, is_special: true });

@@ -58,7 +58,7 @@ impl GrowingFile {
         &self.path
     }
 
-    /// Writes rows, each with its line end.
+    /// Writes rows at the end of the file. Each row includes its line end.
     ///
     /// # Errors
     /// The error names the file and gives the system's message. The file still ends with a complete row.
@@ -66,7 +66,7 @@ impl GrowingFile {
         self.add_rows(rows).map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Writes rows, each with its line end.
+    /// Writes rows at the end of the file. Each row includes its line end.
     ///
     /// # Errors
     /// The error gives the system's message. The file still ends with a complete row.

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use super::terminal::note_line;
 use crate::error::{Error, Result, place};
 
-/// Kind of output that only one run at a time may write into a folder. The run locks a file in the folder, whose name
-/// depends on the kind. The lock ends with the process, however the process ends. A lock file that is left behind locks
-/// nothing.
+/// Kind of output that only one run at a time may write into a folder. The run locks a file in that folder; the name of
+/// this lock file depends on the kind of output. The lock ends with the process, however the process ends. A lock file
+/// that is left behind locks nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locked {
     /// Pictures and the files that accompany them.
@@ -26,8 +26,8 @@ impl Locked {
     }
 }
 
-/// Opens the file whose lock protects `path`, an existing file or folder. This is `path` itself, so that nobody can
-/// remove only the lock.
+/// Opens the file whose lock protects `path`, an existing file or folder. This is `path` itself, because a separate
+/// lock file could be removed while `path` remains.
 ///
 /// # Errors
 /// If the system does not open the file.

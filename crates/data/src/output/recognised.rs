@@ -14,7 +14,7 @@ const MOST_OF_HEAD: u64 = 1 << 20;
 /// Number of bytes at the end of a Parquet file that contain the name of the program that wrote it.
 const TAIL: u64 = 4096;
 
-/// First bytes of a line of a journal.
+/// First bytes of a line of a study's journal.
 const OF_JOURNAL: &[u8] = b"{\"checksum\":\"";
 /// First bytes of files that Slump writes. The second bytes of each pair must also occur at the beginning of the file;
 /// they are empty if the first bytes are sufficient.

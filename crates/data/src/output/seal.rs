@@ -30,7 +30,7 @@ pub struct Seal {
     pub format: u32,
     /// One word for the content of a file in messages, such as `state`.
     pub what: &'static str,
-    /// Text that follows this word in messages, such as ` of a run`.
+    /// Text that follows the word `what` in messages, such as ` of a run`.
     pub of: &'static str,
     /// Description of a valid file, for messages.
     pub form: &'static str,

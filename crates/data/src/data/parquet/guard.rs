@@ -17,13 +17,14 @@ const MOST_DEPTH: usize = 16;
 /// Largest accepted ratio of the unpacked to the packed size of a page. The compression Snappy writes at best 64 bytes
 /// as three.
 const MOST_EXPANSION: i64 = 32;
-/// Unpacked size of a page that is always accepted, bytes, whatever its packed size.
+/// Size of an unpacked page, bytes, up to which the page is always accepted, even if its packed size is very small.
 const SMALL_PAGE: i64 = 4096;
-/// Number of rows that is always accepted, even if the file has fewer bytes than rows, because columns with a constant
-/// value take little space.
+/// Number of rows up to which a file is always accepted, even if it has fewer bytes than rows, because columns with a
+/// constant value take little space.
 const FREE_ROWS: i64 = 1 << 20;
 /// Parquet's numbers of two encodings that state a number of values before the values: `DELTA_LENGTH_BYTE_ARRAY`
-/// (stores lengths) and `DELTA_BYTE_ARRAY` (stores common prefixes). Both are refused.
+/// (stores lengths) and `DELTA_BYTE_ARRAY` (stores common prefixes). Both are refused, because that number is inside
+/// the page and cannot be checked here.
 const COUNTED: [i64; 2] = [6, 7];
 
 /// Result of a check. The error is the reason for refusing a file, as the rest of a sentence after the file's name.
@@ -242,7 +243,7 @@ impl Reader<'_> {
                 return Err("has a header of kind 0".into());
             }
             id = if head >> 4 == 0 { self.whole()? } else { id.wrapping_add(i64::from(head >> 4)) };
-            // The value of a switch (true or false) is a part of its type.
+            // A Boolean field has no bytes of its own: its type states whether it is true or false.
             let value =
                 if head & 15 < 3 { FieldValue::Switch } else { self.value(head & 15, below)? };
             fields.push((id, value));
@@ -381,7 +382,7 @@ mod tests {
 
     #[test]
     fn lists_within_lists_are_refused_before_the_stack_ends() {
-        // A field whose value is a list with one list in it, and so on.
+        // A list that contains a list, and so on, to a depth of thousands.
         let footer = [0x19; 20_000];
         let said = check_footer(&footer, 20_000);
         assert_eq!(said, Err(format!("has headers nested deeper than {MOST_DEPTH}")));
@@ -389,7 +390,7 @@ mod tests {
 
     #[test]
     fn fields_that_nobody_knows_are_looked_at_once_each() {
-        // The bytes of a structure of switches whose field numbers are distinct, from 100 on.
+        // The bytes of a structure of Boolean fields whose field numbers are distinct, from 100 on.
         let header = |fields: usize| [&[0x01, 200, 1][..], &vec![0x11_u8; fields]].concat();
         let secs = |fields: usize| {
             let footer = [&header(fields)[..], &[0]].concat();

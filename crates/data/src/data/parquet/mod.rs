@@ -151,7 +151,7 @@ impl GrowingParts {
         check_count(&self.folder, "rows", rows, marked)
     }
 
-    /// Removes the rows after the step `step`, or all rows if it is `None`.
+    /// Removes the rows after the step `step`, or all rows if `step` is `None`.
     fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
         self.rows.truncate(0);
         (self.number, self.has_news, self.has_file) = (0, false, false);

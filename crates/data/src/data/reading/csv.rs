@@ -154,9 +154,8 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
         Error::file(self.path, format!("{}: {reason}", self.line_at(byte_of(record))))
     }
 
-    /// Returns the number of the line in which the record begins that the CSV reader found at `byte`, as `line 3`. The
-    /// reader's position `byte` is before the blank lines and comments that it skipped, so these lines are skipped
-    /// here, too.
+    /// Returns the number of a record's line in the file, as `line 3`. `byte` is the position of the record by the CSV
+    /// reader. It is before the blank lines and comments that the reader skipped, so these lines are skipped here, too.
     fn line_at(&self, byte: u64) -> String {
         let Ok(source) = (self.open)() else { return "a line".to_owned() };
         let mut start = 0;

@@ -98,7 +98,7 @@ fn last_step(folder: &Path) -> Result<Option<u64>> {
     let mut last = None;
     for row in rows.records() {
         let row = row.map_err(|error| Error::unread(&path, error, "the frames of a recording"))?;
-        // A row that was cut short by a kill does not count.
+        // A row that was cut short because the program was killed does not count.
         last = row.get(0).filter(|_| row.len() == 3).and_then(|step| step.parse().ok()).or(last);
     }
     Ok(last)

@@ -8,7 +8,8 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Largest number of rows per file for which a single number can identify both the file and the row.
+/// Largest number of rows in one file. A row of a table is identified by the index of its file times this number plus
+/// the index of the row.
 const MOST_ROWS: u64 = 1 << 32;
 
 /// Reads the discs of the step `step`, or of the last step if `step` is `None`, from the Parquet files of a table,

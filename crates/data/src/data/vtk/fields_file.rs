@@ -53,8 +53,8 @@ pub(super) struct FieldsBox {
 }
 
 impl FieldsBox {
-    /// Chooses width and region for a recording whose first frame is this moment. If smoothing over a mean diameter
-    /// needs too many cells, the width is doubled as often as necessary.
+    /// Chooses smoothing width and region of the fields for a recording. `moment` is its first frame. If smoothing over
+    /// a mean diameter needs too many cells, the width is doubled as often as necessary.
     fn of(moment: &Moment) -> Self {
         let grains = moment.grains.iter().filter(|grain| !grain.lost);
         let [low, high] = box_of(grains.map(|grain| grain.position));
@@ -73,7 +73,7 @@ impl FieldsBox {
         }
     }
 
-    /// Reads width and region from a file of the recording; `None` if the file does not state them.
+    /// Reads smoothing width and region from a file of the recording; `None` if the file does not state them.
     pub(super) fn of_file(path: &Path) -> Option<Self> {
         let head = head_of(path).ok()?;
         let number = |name: &str| number_in(&head, name)?.parse::<f64>().ok();
@@ -82,7 +82,7 @@ impl FieldsBox {
         Some(Self { width: number(WIDTH)?, corners, has_told: false })
     }
 
-    /// Returns the number of grains outside the region.
+    /// Returns the number of grains outside the region of the fields.
     fn left_out(&self, moment: &Moment) -> u64 {
         let [least, most] = self.corners;
         // Along a periodic axis, all grains are inside the region.
@@ -96,7 +96,8 @@ impl FieldsBox {
     }
 }
 
-/// Returns the file with the fields of a frame. If width and region are not yet known, they are chosen from this frame.
+/// Returns the file with the fields of a frame. If smoothing width and region are not yet known, they are chosen from
+/// this frame.
 pub(super) fn fields_file(
     frame: &Frame,
     facts: &RunFacts,

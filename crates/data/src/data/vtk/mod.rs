@@ -101,7 +101,7 @@ pub(super) struct Vtk {
     folder: PathBuf,
     kinds: &'static [VtkKind],
     facts: RunFacts,
-    /// One series of files for each kind; empty before the first frame of a new recording.
+    /// The `.pvd` file of each kind of file; empty before the first frame of a new recording.
     series: Vec<PvdSeries>,
     /// Smoothing width and region of the fields; known from the first frame on.
     of_fields: Option<FieldsBox>,
@@ -115,8 +115,8 @@ impl Vtk {
         Ok(Self { folder, kinds, facts, series: Vec::new(), of_fields: None })
     }
 
-    /// Creates the series of each kind with the files of the first frames. `times` are the simulated times of these
-    /// frames, s.
+    /// Creates the `.pvd` file of each kind, with entries for the files of the first frames. `times` are the simulated
+    /// times of these frames, s.
     fn begin(&mut self, times: &[f64]) -> Result<()> {
         let series = self.kinds.iter().map(|kind| {
             let files = times.iter().zip(0..).map(|(&time, number)| (time, kind.file_name(number)));
@@ -200,7 +200,7 @@ impl Format for Vtk {
             times.push(time_secs);
         }
         if !times.is_empty() {
-            // The series, which readers open, are shortened before files are removed.
+            // The `.pvd` files, which readers open, are shortened before the files that they list are removed.
             self.begin(&times)?;
         }
         let first = self.folder.join(self.kinds[0].file_name(0));
@@ -342,12 +342,12 @@ fn add(file: &mut VtkFile, Column { name, values, .. }: &Column) {
     }
 }
 
-/// A series of files: a `.pvd` file that lists, for ParaView, the file of each simulated time.
+/// A `.pvd` file: the list from which ParaView knows the file of each simulated time.
 ///
-/// The `.pvd` file grows by one frame at a time, and must be complete whenever it is read or the program is killed.
-/// Entries are therefore slots of fixed length ahead of the closing tags, and free slots are blank. A new entry is
-/// written in one operation within one page of memory, which a kill cannot interrupt. If no slot is free, the file is
-/// rewritten with twice as many slots, so the cost per frame stays constant on average.
+/// This list grows by one frame at a time, and must be complete whenever it is read or the program is killed. Entries
+/// are therefore slots of fixed length ahead of the closing tags, and free slots are blank. A new entry is written in
+/// one operation within one page of memory, which a kill cannot interrupt. If no slot is free, the file is rewritten
+/// with twice as many slots, so the cost per frame stays constant on average.
 struct PvdSeries {
     path: PathBuf,
     file: File,
