@@ -81,8 +81,8 @@ pub(super) struct Runs {
 }
 
 impl Runs {
-    /// Returns an empty collection of runs. `costs` are the expected relative computing times of all series. The first
-    /// series is the unchanged scene.
+    /// Returns an empty collection of runs. `costs` contains the expected computing time of a run of each series,
+    /// divided by the time of a run of the first series, which is the unchanged scene.
     fn new(costs: Vec<f64>, quantities: usize) -> Self {
         let all = costs.iter().map(|_| Vec::new()).collect();
         Self { all, quantities, within: Vec::new(), costs }

@@ -7,11 +7,11 @@ use crate::error::{Error, Result};
 use crate::granular::{HeapShape, PileMeasures};
 use crate::sim::{Observables, Simulation};
 
-/// Number of moments in a window at which columns of the table `measures` are evaluated. The number is small, because
-/// one evaluation takes as long as several steps.
+/// Number of moments in a window of time at which columns of the table `measures` are evaluated. The number is small,
+/// because one evaluation takes as long as several steps.
 const MOMENTS: u64 = 100;
 
-/// A statistic of the values in a window, such as their mean.
+/// A statistic of the values in a window of time, such as their mean.
 type Statistic = fn(&Found) -> f64;
 
 const STATISTICS: [(&str, Statistic); 4] = [
@@ -36,7 +36,7 @@ pub(crate) struct BudgetQuantity {
     pub name: String,
     /// Unit of the quantity; empty for a dimensionless quantity.
     pub unit: &'static str,
-    /// Statistic over the window; `None` for the last value in the window.
+    /// Statistic over the window of time; `None` for the last value in the window.
     statistic: Option<Statistic>,
     column: RecordedColumn,
 }
@@ -131,7 +131,7 @@ impl<'a> QuantityWatch<'a> {
         Self { quantities, first, last, stride, found: vec![none; quantities.len()] }
     }
 
-    /// Returns the number of steps from the start of the run to the end of the window.
+    /// Returns the number of steps from the start of the run to the end of the window of time.
     pub(super) fn steps(&self) -> u64 {
         self.last
     }

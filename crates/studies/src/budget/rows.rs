@@ -84,7 +84,7 @@ pub(crate) struct QuantityBudget {
     pub causes: Vec<CauseRow>,
 }
 
-/// The answer of an error budget on one quantity, in the form that the program's window displays.
+/// The answer of an error budget on one quantity, in the form that the program's graphical window displays.
 #[derive(Clone, Debug)]
 pub struct BudgetAnswer {
     /// Verdict on the quantity.
@@ -148,7 +148,7 @@ impl QuantityBudget {
         rows
     }
 
-    /// Returns the answer in the form that the program's window displays.
+    /// Returns the answer in the form that the program's graphical window displays.
     pub(super) fn for_window(&self) -> BudgetAnswer {
         let effect = |(row, adds): (&CauseRow, [f64; 3])| BudgetEffect {
             share: row.share.word(),
@@ -179,7 +179,7 @@ impl QuantityBudget {
         of_share.filter_map(|row| row.adds).any(|ends| is_outside(ends, self.within))
     }
 
-    /// Returns a number, which is given as text, with the unit of the quantity.
+    /// Appends the unit of the quantity to a number, which is given as text.
     pub(super) fn with_unit(&self, number: &str) -> String {
         if self.unit.is_empty() { number.to_owned() } else { format!("{number} {}", self.unit) }
     }

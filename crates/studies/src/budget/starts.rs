@@ -146,7 +146,7 @@ impl Starts {
     }
 }
 
-/// Runs a scene from time 0 to the end of the window, and returns the values of the quantities in the window.
+/// Runs a scene from time 0 to the end of the window of time, and returns the values of the quantities in this window.
 pub(crate) fn run(
     scene: &Scene,
     quantities: &[BudgetQuantity],

@@ -60,7 +60,7 @@ impl From<bool> for Verdict {
 /// A claim, its measurement, and the verdict.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
-    /// Statement of the paper, or a further question.
+    /// Statement that is tested: one of the paper, or a further one.
     pub said: String,
     /// Measured value in words, with its interval or p-value.
     pub measured: String,

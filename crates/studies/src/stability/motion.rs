@@ -204,7 +204,8 @@ const ROWS: usize = 4;
 const BOX: f64 = 12.0;
 /// Simulated time between two changes of the sliders, s.
 const CHANGE_SECS: f64 = 0.05;
-/// Number of sweeps per step while the sliders move. It is so small that the program's window could keep up.
+/// Number of sweeps per step while the sliders move. It is so small that the graphical window could show the run in
+/// real time.
 const LIVE_SWEEPS: u32 = 200;
 
 /// Returns the largest kinetic energy after a heavy disc is removed from a column, relative to the weight of one of the

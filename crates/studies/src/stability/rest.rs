@@ -13,7 +13,8 @@ use crate::world::Parameters;
 // column sinks as if its discs were soft: the apparent elasticity of a solver that has not converged.
 
 const COLUMN_SECS: f64 = 0.1;
-/// Number of sweeps per step in tests that do not vary it. It is as small as in a window that must keep up.
+/// Number of sweeps per step in tests that do not vary it. It is small, as in the graphical window, which must show a
+/// run in real time.
 const FEW_SWEEPS: u32 = 100;
 const SAGGING_DISCS: usize = 20;
 
@@ -155,7 +156,8 @@ pub(super) fn rest(trial: &Trial) -> Result<f64> {
 
 // Very many contacts at rest, with few sweeps per step.
 
-/// Number of sweeps per step, or of iterations of a method without sweeps, for which a window has time.
+/// Number of sweeps per step, or of iterations of a method without sweeps. The graphical window has time for about this
+/// many.
 const WINDOW_SWEEPS: u32 = 40;
 /// Number of steps in the tests with very many contacts. The first step begins without impulses. In free fall, a grain
 /// would move by 0.2 diameters in these steps.

@@ -1,6 +1,6 @@
-//! Measures the errors of stability tests at a single moment of a run, for the program's window. Each error is 0 for
-//! the right answer, and has the same limits as its test. Before the first step, and before the scene has reached the
-//! state to be judged, there is no error.
+//! Measures the errors of stability tests at a single moment of a run, for the program's graphical window. Each error
+//! is 0 for the right answer, and has the same limits as its test. Before the first step, and before the scene has
+//! reached the state to be judged, there is no error.
 
 use glam::DVec2;
 

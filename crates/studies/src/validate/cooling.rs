@@ -81,7 +81,7 @@ pub(super) fn collisions_per_distance(discs: f64) -> f64 {
     PI.sqrt() * discs / side(discs).powi(2) * DIAMETER * contact_value()
 }
 
-/// Returns the cooling time τ of Haff's law (see the module), s.
+/// Returns the cooling time τ of Haff's law, s. The comment of the module gives the formula.
 fn time_secs(discs: f64) -> f64 {
     let at_wall = discs / side(discs).powi(2) * (1.0 + 2.0 * SOLID_FRACTION * contact_value());
     let of_walls = 4.0 * (side(discs) - DIAMETER) * at_wall / (TAU.sqrt() * discs);

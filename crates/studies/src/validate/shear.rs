@@ -56,8 +56,8 @@ const PRESSING_SECS: f64 = 0.5;
 /// Least shear of a layer before the measurement, and shear during the measurement: displacement of the plate divided
 /// by the height of the layer.
 const STRAINS: [f64; 2] = [1.5, 3.0];
-/// Number of decay lengths of a transient by which a layer is sheared before the measurement, in addition to the least
-/// shear. The decay length is computed with [`SLOWEST`].
+/// Additional shear of a layer before the measurement, as a multiple of the shear over which a transient decays. That
+/// shear is computed with [`SLOWEST`].
 const TIMES_TO_STEADY: f64 = 3.0;
 /// Friction T/N of a layer in which a transient decays slowly: tangential force divided by normal force.
 const SLOWEST: f64 = 0.4;
@@ -146,8 +146,8 @@ impl ShearedLayer {
         self.kind.inertial / inertial_secs()
     }
 
-    /// Returns the shear until the flow is steady: displacement of the plate divided by the height of the layer (see
-    /// the module).
+    /// Returns the shear until the flow is steady: displacement of the plate divided by the height of the layer. The
+    /// comment of the module gives the formula.
     fn strains_to_steady(&self) -> f64 {
         let times = (self.height() * self.kind.inertial).powi(2) / (PI * PI * SLOWEST);
         STRAINS[0] + TIMES_TO_STEADY * times

@@ -36,7 +36,7 @@ const THRESHOLD: f64 = 2.0;
 const FINEST_SECS: f64 = 1e-4;
 const DURATION_SECS: f64 = 1.0;
 /// Solver method of the references, and the residuals to which it solves each step. References with the second residual
-/// only serve to measure the floor.
+/// only serve to measure the floor: the difference between two references, below which errors have no meaning.
 const REFERENCE: Method = Method::Newton;
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
 /// Slump below which a pile counts as stable.
@@ -248,11 +248,12 @@ struct ReferenceCase {
     tolerance: usize,
 }
 
-/// All reference runs, including the runs that only serve to measure the floor.
+/// All reference runs. Some of them only serve to measure the floor: the difference between two references.
 struct References(Vec<(ReferenceCase, TimedRun)>);
 
 impl References {
-    /// Returns all reference runs of a plan. The floor is only measured at the charted time steps.
+    /// Returns all reference runs of a plan. The floor (the difference between two references) is only measured at the
+    /// charted time steps.
     fn cases(plan: &SimulationPlan) -> Vec<ReferenceCase> {
         let mut cases = Vec::new();
         for &law in &plan.laws {
