@@ -2,7 +2,7 @@
 
 use crate::statistics::{mean, slope};
 
-/// A damped wave x_n = c rⁿ cos(nθ + φ), with the number n of the step: its change per step.
+/// A damped wave x_n = c rⁿ cos(nθ + φ), with the number n of the step, as described by its change per step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampedWave {
     /// Angle θ by which the wave rotates per step, rad.

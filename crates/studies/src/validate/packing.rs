@@ -82,7 +82,7 @@ fn pack(
     ]))
 }
 
-/// Returns the contacts that bear a force and do not involve a rattler.
+/// Returns the contacts that bear a force and do not involve a rattler, a grain that transmits no force.
 fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState> {
     let sum: f64 = moment.contacts.iter().map(|contact| contact.force.length()).sum();
     let least = BEARS_FROM * sum / moment.contacts.len() as f64;

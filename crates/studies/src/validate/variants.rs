@@ -15,7 +15,7 @@ const UNASKED: [SolveBudget; 2] = [SolveBudget::Sweeps(20), SolveBudget::Sweeps(
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SolveBudget {
-    /// A fixed number of sweeps per step, for any residual.
+    /// Makes a fixed number of sweeps per step, without a limit of the residual.
     Sweeps(u32),
     /// Solves each step to this residual, with at most [`MOST_SWEEPS`] sweeps.
     Residual(f64),
