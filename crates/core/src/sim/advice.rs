@@ -111,7 +111,8 @@ pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice on unsolved steps. `stalled` is true if the residual had stopped decreasing in the last of them.
+/// Returns the advice on unsolved steps. `stalled` is true if the residual of the last unsolved step had stopped
+/// decreasing.
 pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> Advice {
     let Settings { stepper, parameters, solver, .. } = settings;
     if !stalled && solver.max_sweeps < SolverSettings::DEFAULT.max_sweeps {
@@ -124,7 +125,7 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
     if stalled && may_bounce && stepper.reads("restitution-threshold") {
         return Advice::RestitutionThreshold;
     }
-    // Not under other friction models, for which solver `newton` would solve a different law.
+    // Only under Coulomb friction: under another friction model, solver `newton` would solve a different law.
     if solver.friction_model == FrictionModel::Coulomb {
         let newton = Method::Newton.info();
         let is_driven = state.world.motions.iter().any(|motion| motion.drive.is_some());

@@ -58,9 +58,9 @@ pub struct Alarm {
     pub kind: AlarmKind,
     /// First step that showed the failure.
     pub step: u64,
-    /// Simulated time at the end of that step, s.
+    /// Simulated time at the end of the first step that showed the failure, s.
     pub time_secs: f64,
-    /// Change of the settings or the scene that is most likely to help.
+    /// Advice: the change of the settings or the scene that is most likely to help.
     pub advice: Advice,
     /// Longest time step that would avoid the failure, s; `None` if it is unknown or a shorter step would not help.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -68,7 +68,7 @@ pub struct Alarm {
     /// Present stiffness of the springs, N/m, if a larger stiffness would help; otherwise `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
-    /// Number of occurrences so far; `None` if occurrences of this kind are not counted.
+    /// Number of occurrences of the failure so far; `None` if failures of this kind are not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
 }
@@ -126,8 +126,8 @@ impl Alarm {
     }
 }
 
-/// Checks of a running simulation for failures. They are saved with the simulation, so that a restarted run raises the
-/// same alarms.
+/// Data with which a running simulation is checked for failures. They are saved with the simulation, so that a
+/// restarted run raises the same alarms.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Watch {
@@ -168,7 +168,7 @@ impl Watch {
         watch
     }
 
-    /// Records that the grains were placed at their present positions. The contacts must have been found.
+    /// Records that the grains were placed at their present positions. Call this after the contacts have been found.
     pub(super) fn place(&mut self, state: &State) {
         self.losses.place(&state.world.grains.positions);
         (self.are_placed, self.placed_overlap) = (true, DeepestContact::new(state, &[]).overlap);
@@ -182,7 +182,8 @@ impl Watch {
         }
     }
 
-    /// Returns the alarm that grains were placed in overlap, or `None`. `observables` are those before the next step.
+    /// Returns the alarm that grains were placed in overlap, or `None`. `observables` are the measurements before the
+    /// next step.
     pub(super) fn of_placed(
         &self,
         observables: &Observables,
@@ -243,7 +244,7 @@ impl Watch {
             placed if placed > LARGEST_OVERLAP => placed + GROWTH_OF_OVERLAP,
             _ => LARGEST_OVERLAP,
         };
-        // No further alarm on grains placed in overlap: they fly apart and may collide hard.
+        // Grains that were placed in overlap raise no further alarm, because they fly apart and may collide hard.
         if overlap > most && !self.has(AlarmKind::PlacedInOverlap) {
             // True if the contact was already known before this step: it deepens because the step is not solved.
             let sinks = !observables.converged && found_in < observables.step;
@@ -304,7 +305,8 @@ impl Watch {
             self.raise_on_depth(AlarmKind::GrainLost, sinks, state, settings, observables);
         }
         if new.left {
-            // At this speed a grain can be above a fixed disc before a step and below the disc afterwards.
+            // With a longer time step, a grain this fast can be above a fixed disc before a step and below the disc
+            // afterwards.
             let longest = 1.0 / new.diameters_per_second;
             match observables.time_step_secs > longest {
                 true => self.raise(AlarmKind::GrainLeft, observables, Some(longest)),
@@ -379,9 +381,10 @@ impl Watch {
 
 /// The contact with the largest relative overlap, after the travel of its two grains in one step is subtracted.
 struct DeepestContact {
-    /// Overlap minus travel, in diameters of the smaller disc. At a wall, the diameter is that of the grain.
+    /// Overlap minus the travel of both grains in one step, in diameters of the smaller disc. At a wall, the diameter
+    /// is that of the grain.
     overlap: f64,
-    /// Step in which this contact was first found.
+    /// Number of the step in which this contact was first found.
     found_in: u64,
 }
 

@@ -15,8 +15,8 @@ impl Simulation {
     /// replaced, and their work is part of `gravity_work`. A grain added later has no body force.
     ///
     /// # Errors
-    /// The error says why `forces` are not valid: their number differs from the number of grains, or a force is not
-    /// possible in this world. The forces are then unchanged.
+    /// The error says why `forces` are not valid: their number differs from the number of grains, a force is not
+    /// finite, or a force acts along y in a scene with one axis. The forces are then unchanged.
     pub fn set_body_forces(&mut self, forces: &[DVec2]) -> Result<()> {
         let mut held = vec![DVec2::ZERO; self.state.world.grains.len()];
         self.replace("body_forces", &mut held, forces)?;

@@ -31,12 +31,12 @@ pub enum Edit {
     /// Drags a boundary: its point [`place_of`] moves straight to the target and stays there until the boundary is
     /// released.
     Draw {
-        /// Index of the boundary.
+        /// Index of the dragged boundary.
         boundary: u32,
-        /// Target of the point, m.
+        /// Point to which the boundary is dragged, m.
         to: DVec2,
     },
-    /// Releases the boundary, which then stays at its place.
+    /// Releases the dragged boundary, which then stays at its place.
     LetGo,
 }
 
@@ -52,7 +52,7 @@ pub fn place_of(boundary: &Boundary) -> DVec2 {
 /// Speed of a dragged wall, in √(g·d). In a scene with d = 5 mm and Δt = 1 ms the wall moves a fiftieth of a diameter
 /// per step, which every stepper tolerates.
 const SPEED_OF_HAND: f64 = 0.5;
-/// Overlap of a new grain that counts as rounding, in mean diameters.
+/// Largest overlap of a new grain with another body that counts as rounding, in mean diameters.
 const ROUNDING: f64 = 1e-9;
 
 impl Simulation {
@@ -110,8 +110,8 @@ impl Simulation {
     /// Sets the velocities of all grains, m/s.
     ///
     /// # Errors
-    /// The error says why `velocities` are not valid: their number differs from the number of grains, or a velocity is
-    /// not possible in this world. The simulation is then unchanged.
+    /// The error says why `velocities` are not valid: their number differs from the number of grains, a velocity is not
+    /// finite, or a velocity changes along y in a scene with one axis. The simulation is then unchanged.
     pub fn set_velocities(&mut self, velocities: &[DVec2]) -> Result<()> {
         let mut now = self.state.world.grains.velocities.clone();
         self.replace("velocities", &mut now, velocities)?;

@@ -75,7 +75,7 @@ impl ForceSums {
         }
     }
 
-    /// Returns the sums, and starts again from zero.
+    /// Returns the sums so far, and starts new sums from zero.
     pub fn take(&mut self) -> Self {
         let fresh = Self { come_to: self.come_to, ..Self::default() };
         std::mem::replace(self, fresh)

@@ -29,7 +29,7 @@ const WAY_IN_RADII: f64 = 0.25;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Losses {
-    /// Point at which the path of each grain that is still to be examined begins, m.
+    /// Beginning of each grain's path that has not been examined yet, m.
     from: Vec<DVec2>,
     pub lost: Vec<bool>,
     pub count: u32,
@@ -264,7 +264,8 @@ impl Edges {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Fate {
     There,
-    /// The centre has entered a solid polygon. Its exit will show if the grain passed through the polygon.
+    /// The centre has entered a solid polygon. When it leaves the polygon, the examination shows if the grain passed
+    /// through.
     Inside,
     Lost,
 }
@@ -291,8 +292,8 @@ fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     now[0] + local.x * along_now + local.y * along_now.perp()
 }
 
-/// Examines at one wall the path of a grain from `from`, a point outside all polygons, to `to`. `deep` is the negative
-/// depth at which a grain is lost, m.
+/// Returns the result, at one wall, for a grain that moved from `from`, a point outside all polygons, to `to`. `deep`
+/// is the negative depth at which a grain is lost, m.
 fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     let if_lost = |lost: bool| if lost { Fate::Lost } else { Fate::There };
     match feature {

@@ -220,7 +220,7 @@ fn of_state<M: Model>(
         bond_work: bonds.map(|bonds| bonds.work),
         bond_energy: bonds.map(|bonds| bonds.stored),
         broken_bond_energy: bonds.map(|bonds| bonds.broken),
-        // Set later by the check for lost grains (`sim::losses`).
+        // The check for lost grains sets this number later (`sim::losses`).
         lost_grains: 0,
     }
 }
@@ -253,7 +253,7 @@ pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
         }
         deepest = deepest.max((-contact.gap).positive_part());
         if let Other::Grain(_) = numbering.other(contact.other) {
-            // A bond may be stretched; its opening does not count as overlap.
+            // A bond may be stretched. A stretched pair counts as having the overlap 0.
             overlap_of_pairs +=
                 if bonds { (-contact.gap).positive_part() } else { contact.gap.abs() };
             pairs += 1;
@@ -286,7 +286,7 @@ pub struct Quantity<Row: 'static> {
 pub type Beside<Row> = (&'static str, fn(&Row) -> Option<f64>);
 
 impl<Row> Quantity<Row> {
-    /// Defaults of a quantity: no unit, a linear axis, and no additional curves.
+    /// Default values of a plotted quantity: no unit, a linear axis, and no additional curves.
     pub const PLAIN: Self = Self {
         name: "",
         title: "",

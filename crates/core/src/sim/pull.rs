@@ -9,7 +9,7 @@ use crate::world::{Parameters, World};
 /// Stiffness of the spring divided by the mass of the grain, in units of g/d: a spring stretched by one mean diameter
 /// pulls with 40 times the weight of the grain.
 const STIFFNESS: f64 = 40.0;
-/// Value of g for the scaling of springs in a scene without gravity, m/s².
+/// Gravitational acceleration for the scaling of springs in a scene without gravity, m/s².
 const GRAVITY_IF_NONE: f64 = 9.8;
 
 /// Returns the acceleration that scales the stiffness and speed of interactive pulls, m/s²: gravity of the scene, or

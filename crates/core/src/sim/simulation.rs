@@ -197,7 +197,7 @@ impl Simulation {
             result.measures.measure_as_a_model();
         }
         let time_step_secs = settings.parameters.time_step_secs;
-        // Steppers without a solver are excluded, because they have no tolerance that their residual could miss.
+        // Only the step of a solver can be unsolved: other steppers have no tolerance that their residual could miss.
         let is_solved = last_stepper.is_none_or(Stepper::uses_method);
         result.report.converged &= !is_solved || result.measures.residual.is_finite();
         *observables =
@@ -211,7 +211,7 @@ impl Simulation {
         // A state whose kinetic energy overflows counts as not finite, too, because nothing can be measured of it.
         let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
         let Self { state, settings, watch, observables, .. } = self;
-        // Springs of `dem` return stored energy, and the works of `avbd` do not add up to its change of energy.
+        // Not for `dem`, whose springs return stored energy, nor for `avbd`, whose works do not balance its energy.
         let is_balanced = |stepper| !matches!(stepper, Stepper::Dem | Stepper::Avbd);
         if finite && self.last_stepper.is_some_and(is_balanced) {
             watch.count_work(state, settings, observables);
@@ -252,7 +252,7 @@ impl Simulation {
         with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
     }
 
-    /// Prepares the next step. Returns its model, the memory with its problem, and its contacts. This function is not
+    /// Prepares the next step. Returns its model, the slots that contain its contact problem, and its contacts. Not
     /// generic, so that it is compiled only in this crate.
     fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
@@ -364,7 +364,7 @@ impl Simulation {
         &self.watch.alarms
     }
 
-    /// Returns the alarm that the next step will raise because grains were placed in overlap, if it will raise one.
+    /// Returns the alarm that the next step will raise if grains were placed in overlap; `None` if they were not.
     pub fn alarm_on_placed(&self) -> Option<Alarm> {
         self.watch.of_placed(&self.observables, &self.settings)
     }
@@ -412,11 +412,11 @@ impl Steady {
     }
 }
 
-/// Visitor that receives the contact problem of a step before it is solved ([`Simulation::next_problem`]).
+/// Visitor that receives the contact problem of the next step before it is solved ([`Simulation::next_problem`]).
 pub trait ProblemVisitor {
     /// Result of the visit.
     type Output;
-    /// Receives the problem. Its row `k` is contact `problem.rows.contacts[k]` of `contacts`.
+    /// Receives the problem. Row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> Self::Output;
 }
 

@@ -148,7 +148,7 @@ impl State {
                 *position += time_step_secs * *velocity;
             }
         }
-        // Independent of the compiled model, because grains keep turning while friction is off.
+        // Depends on the physics and not on the compiled model: grains keep turning while friction is off.
         if self.physics.rotation {
             for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
                 *angle += time_step_secs * spin;

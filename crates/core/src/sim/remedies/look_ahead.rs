@@ -18,8 +18,8 @@ const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 /// > 0 ≤ P ⟂ v_n + gap/Δt ≥ 0.
 ///
 /// These pairs do not pull. At the end of the step they touch, because the law adds the rounding tolerance of contacts
-/// (`contact::range`) to their gap. In the compressive cone their bound of friction only counts the normal force beyond
-/// the cohesion that they will have later.
+/// (`contact::range`) to their gap. In the compressive cone, which bounds friction by μ max(N, 0) with the normal force
+/// N, only the part of N counts that exceeds the cohesion that the pair will have later.
 ///
 /// **Drawbacks.** The pair is slowed down to the speed gap/Δt before it meets, and in the next step it bounces with ρ
 /// times this speed. So it bounces with any fraction between 0 and 1 of the correct speed, on average with half of it.

@@ -20,7 +20,7 @@ struct PushedContact {
     i: usize,
     j: Option<usize>,
     normal: DVec2,
-    /// Required increase of the gap, m. If negative, the gap may decrease by the absolute value.
+    /// Required increase of the gap, m. A negative value allows the gap to decrease by this amount.
     want: f64,
     /// Push λ of the contact, kg·m: mass times displacement.
     push: f64,

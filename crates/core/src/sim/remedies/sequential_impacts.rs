@@ -57,17 +57,19 @@ const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
 /// serves scenes without gravity: for ρ < 1 the contacts of a chain close infinitely often, ever more slowly. With a
 /// smaller value, more passes are spent on invisible motion.
 const LEAST_IN_FASTEST: f64 = 1e-6;
-/// Largest number of passes in a step. A shock through a row of n balls needs n − 1 passes.
+/// Largest number of passes in a step. A pass solves all contacts that close at the same time. A shock through a row of
+/// n balls needs n − 1 passes.
 const MOST_PASSES: u32 = 2000;
 
-/// Relative work of contacts above which they count as creating energy. Rounding and the tolerance of a step cause
-/// smaller values.
+/// Work of the contacts of a step, divided by the sum of its absolute parts, above which the contacts count as creating
+/// energy. Rounding and the tolerance of a step cause smaller values.
 const LEAST_GAIN: f64 = 1e-6;
 
 /// Number of times that the bounces of a step are reduced if they create energy: halved, and the last time set to 0.
 const HALVINGS: u32 = 5;
 
-/// Solver settings of a pass. They do not depend on the solver of the step, because few contacts close together.
+/// Solver settings of a pass (one stage of a shock). They do not depend on the solver of the step, because few contacts
+/// close together.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
 /// Solves a prepared step whose contacts open with the speeds that the shocks of the step have given them. Reduces
@@ -155,11 +157,11 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
 struct ImpactSequence<M: Model> {
     /// Present velocities of the grains.
     bodies: Vec<M::Body<f64>>,
-    /// Normal velocity u of each row (contact of the problem), m/s.
+    /// Normal velocity u of each contact of the problem, m/s.
     speeds: Vec<f64>,
-    /// Normal impulse of each row so far, divided by its effective mass, m/s.
+    /// Normal impulse of each contact so far, divided by its effective mass, m/s.
     impulses: Vec<f64>,
-    /// True for each row whose pair touches. A pair that will only touch later in the step takes no part in shocks.
+    /// True for each contact whose pair touches. A pair that will only touch later in the step takes no part in shocks.
     touching: Vec<bool>,
 }
 
@@ -181,7 +183,7 @@ impl<M: Model> ImpactSequence<M> {
             .fold(0.0, |fastest, (speed, _)| fastest.max((-speed).positive_part()))
     }
 
-    /// Fills `pass` with the rows that close faster than `least` (m/s). Returns false if there are none.
+    /// Fills `pass` with the contacts that close faster than `least` (m/s). Returns false if no contact does.
     fn select(
         &self,
         problem: &StepProblem<M>,
@@ -207,7 +209,7 @@ impl<M: Model> ImpactSequence<M> {
         !pass.rows.is_empty()
     }
 
-    /// Adds the impulses of a solved pass, and updates the velocities.
+    /// Adds the impulses of a solved pass to the impulses so far, and updates the velocities.
     fn take(&mut self, problem: &StepProblem<M>, pass: &mut StepProblem<M>) {
         for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
@@ -246,8 +248,8 @@ impl<M: Model> ImpactSequence<M> {
         report
     }
 
-    /// Requires of each struck contact the opening speed that the shocks have given it. A contact that was not struck
-    /// may not bounce. The solver starts from the impulses of the shocks.
+    /// Changes the law of each struck contact so that it opens with the speed that the shocks have given it. A contact
+    /// that was not struck may not bounce. The solver starts from the impulses of the shocks.
     fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];

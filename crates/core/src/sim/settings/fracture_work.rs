@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::law::cohesion_force;
 use crate::world::{Parameters, Physics, World};
 
-/// Work needed to pull two bonded grains, each of the mean mass m, apart slowly.
+/// Work of fracture: the work needed to pull two bonded grains, each of the mean mass m, apart slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FractureWork {
     /// Work of fracture, J.

@@ -166,7 +166,8 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the solver and the friction model support rolling friction, if `is_given` is true.
+    /// Checks that the solver and the friction model support rolling friction, if rolling friction is present
+    /// (`is_given`).
     fn check_rolling(&self, is_given: bool) -> Result<()> {
         let SolverSettings { method, friction_model, .. } = self.solver;
         let refuse = |field: &str, found: String, allowed: &str| {

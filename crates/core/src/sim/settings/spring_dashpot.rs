@@ -130,7 +130,7 @@ fn stiffness_for_weight(world: &World, axes: u8, parameters: &Parameters) -> f64
 /// Returns the damping ratio ζ that gives a restitution.
 fn damping_ratio(restitution: f64) -> f64 {
     let wanted = restitution.max(LEAST_RESTITUTION);
-    // At ζ = 1/√ρ the restitution is below ρ for every ρ < 1.
+    // Upper end of the search, 1/√ρ: with this damping ratio the restitution is below the wanted ρ for every ρ < 1.
     let (mut low, mut high) = (0.0, 1.0 / wanted.sqrt());
     if wanted == 1.0 {
         return low;
@@ -228,7 +228,7 @@ pub(super) fn check_substeps(
     };
     let need = format!("would need more than {MAX_SUBSTEPS} substeps");
     if stiffness > 0.0 {
-        // The critical time step is proportional to 1/√stiffness.
+        // Scales from stiffness 1 N/m, because the critical time step is proportional to 1/√stiffness.
         let root = most * SAFE_FRACTION * critical_with(1.0) / time_step_secs;
         let most_stiff = rounded_down(root * root);
         let allowed = format!(

@@ -29,7 +29,7 @@ words! {
 pub struct StepperInfo {
     /// One line that names the problem that a step solves.
     pub solves: &'static str,
-    /// Source of the stepper in the literature.
+    /// Publication that describes the stepper.
     pub source: &'static str,
     /// Names of the settings that the stepper reads, separated by spaces. If `solver` is among them, a solver solves
     /// the contact problem of each step.

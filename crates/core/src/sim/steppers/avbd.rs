@@ -90,17 +90,19 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
-/// Smallest κ (stiffness of a contact times h²/m_ij), and the κ of a new contact. With a smaller value new contacts
-/// sink in; with a larger value the descent body by body cannot transmit a force.
+/// Smallest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij), also of a
+/// new contact. With a smaller value new contacts sink in; with a larger value the descent body by body cannot transmit
+/// a force.
 const SOFTEST: f64 = 1.0;
-/// Largest κ (stiffness of a contact times h²/m_ij). A contact with a larger κ would dominate all other forces on its
-/// two bodies.
+/// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij). A stiffer
+/// contact would dominate all other forces on its two bodies.
 const STIFFEST: f64 = 1e6;
-/// Increase of κ in an iteration if a contact is violated by the speed g·h. With a larger value columns are more
-/// stable, but impacts make contacts so stiff that the descent body by body cannot transmit forces, and collapsing
-/// piles explode.
+/// Increase of a contact's dimensionless stiffness κ per iteration, if the contact is violated by the speed that
+/// gravity adds in a substep. With a larger value columns are more stable, but impacts make contacts so stiff that the
+/// descent body by body cannot transmit forces, and collapsing piles explode.
 const GROWTH: f64 = 0.1;
-/// Factor that multiplies κ at the beginning of each substep. With a smaller value, contacts of resting grains soften.
+/// Factor that multiplies the stiffness κ of all contacts at the beginning of each substep. With a smaller value,
+/// contacts of resting grains soften.
 const KEPT: f64 = 0.99;
 /// Overlap that the last pass of a substep leaves, in mean diameters. Cohesive contacts need some overlap to pull.
 const MARGIN: f64 = 5e-4;
@@ -109,7 +111,7 @@ const MARGIN: f64 = 5e-4;
 #[derive(Clone, Copy)]
 struct Side {
     row: u32,
-    /// Body to which this side belongs: 0 for body i of the row, 1 for body j.
+    /// Body to which this side belongs: 0 for body i of the contact, 1 for body j.
     end: u8,
 }
 
@@ -117,15 +119,15 @@ struct Side {
 struct BlockDescent {
     substep_secs: f64,
     law: ContactLaw,
-    /// Speed g·h by which violations are measured, m/s.
+    /// Speed that gravity adds in a substep, g·h, m/s. Violations of contacts are divided by this speed.
     speed_scale: f64,
     /// Overlap that the last pass of a substep leaves, m.
     margin: f64,
-    /// Stiffnesses (κ_n, κ_t) of each row along normal and tangent, dimensionless.
+    /// Dimensionless stiffnesses (κ_n, κ_t) of each contact along normal and tangent.
     stiffness: Vec<[f64; 2]>,
     /// Sides of all contacts, sorted by body.
     sides: Vec<Side>,
-    /// For each body: the end of its range in `sides`.
+    /// For each body: the end of the body's range in `sides`.
     side_ends: Vec<usize>,
 }
 
@@ -156,7 +158,7 @@ impl BlockDescent {
         }
     }
 
-    /// Takes the stiffnesses of the previous step from the memories of the contacts.
+    /// Takes the stiffnesses that contacts have stored in the previous step.
     fn stiffen<M: Model>(&mut self, stage: &Stage<'_, M>) {
         let memories = stage.state.contacts.memories();
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -167,7 +169,7 @@ impl BlockDescent {
         }
     }
 
-    /// Stores the stiffnesses in the memories of the contacts, for the next step.
+    /// Stores the stiffnesses in the contacts, for the next step.
     fn remember<M: Model>(&self, stage: &mut Stage<'_, M>) {
         let memories = stage.state.contacts.parts_mut().memories;
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -257,7 +259,7 @@ impl BlockDescent {
         }
     }
 
-    /// Returns the impulses of a contact at the present velocities of its bodies.
+    /// Returns the impulses of a contact (m/s) at the present velocities of its bodies.
     #[inline(always)]
     fn push<M: Model>(
         &self,
@@ -303,8 +305,8 @@ struct ContactPush {
     is_cut: [bool; 2],
 }
 
-/// Returns the gradient ∇c of a row's normal (`direction` 0) or tangential (1) velocity with respect to the velocity of
-/// its body i (`end` 0) or j (1).
+/// Returns the gradient ∇c of a contact's normal (`direction` 0) or tangential (1) velocity with respect to the
+/// velocity of its body i (`end` 0) or j (1).
 #[inline(always)]
 fn gradient<M: Model>(row: &Row<M>, end: usize, direction: usize) -> DVec3 {
     let mut gradient = M::gradients(row.normal)[end][direction];

@@ -80,7 +80,8 @@ fn velocity<M: Model>(
 /// Contact law of a substep: springs, dashpots, cohesion and friction.
 struct Elements {
     springs: SpringDashpot,
-    /// Cohesion force divided by the effective mass, C₀/m_ij = Bond·a, m/s².
+    /// Cohesion force divided by the effective mass, m/s²: C₀/m_ij = Bond·a, with the acceleration a that defines the
+    /// cohesion.
     cohesive_acceleration: f64,
     law: ContactLaw,
     substep_secs: f64,
@@ -88,7 +89,7 @@ struct Elements {
 
 impl Elements {
     /// Computes the forces of a contact with the effective mass `mass` (kg) from its gap (m) and its relative
-    /// velocities (m/s), and stores them in the memory of the contact.
+    /// velocities (m/s), and stores them in `memory`, the data that the contact keeps.
     #[inline(always)]
     fn force<M: Model>(
         &self,

@@ -13,8 +13,8 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds::{is_open_against, is_within_bounds};
 use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
-/// Data of a step during its substeps. They are dropped at the end of the step: data that later steps need are in the
-/// world and in the memories of contacts.
+/// Data of a step during its substeps. They are dropped at the end of the step: the world and the contacts store the
+/// data that later steps need.
 pub(super) struct Substepping<M: Model> {
     /// Number of substeps of the step.
     pub count: u32,
@@ -161,10 +161,10 @@ pub(super) struct Touching {
     /// Change of the normal and of the tangential velocity per unit impulse, divided by the same change at a wall that
     /// does not yield: 1 unless the wall is driven by a force.
     pub answers: [f64; 2],
-    /// Separation speed that the law requires because of restitution, with the opposite sign, relative to the wall,
-    /// m/s: below 0 if the contact was closing.
+    /// Term that the contact law adds to the normal velocity because of restitution, relative to the wall, m/s: minus
+    /// the separation speed, so below 0 if the contact was closing.
     pub rebound: f64,
-    /// Capture speed: the opening speed that cohesion can stop in this substep, Bond·a·h, m/s; 0 without cohesion.
+    /// Capture speed: the opening speed that cohesion can stop in this substep, m/s; 0 without cohesion.
     pub capture_speed: f64,
     /// Normal and tangential impulses (λ_n, λ_t) of this substep divided by the effective mass, m/s.
     pub impulse: [f64; 2],
@@ -179,8 +179,8 @@ impl Touching {
     }
 }
 
-/// Returns the contacts in the order of the problem's rows. Their impulses are those of the forces of the previous
-/// step, acting for `warm_secs` (s); 0 s gives a cold start.
+/// Returns the contacts in the order of the problem's rows. Their impulses are the forces of the previous step times
+/// `warm_secs` (s); 0 s gives a cold start.
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
     let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
@@ -233,7 +233,7 @@ pub(super) fn end_substep<M: Model>(
     }
 }
 
-/// Stores the forces of the last substep in the memories of the contacts, for the warm start of the next step.
+/// Stores the forces of the last substep in the contacts, for the warm start of the next step.
 pub(super) fn remember<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &[Touching],
@@ -261,7 +261,8 @@ pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touc
     }
 }
 
-/// Returns the normal and tangential relative velocities of all rows if the grains have the velocities `bodies`, m/s.
+/// Returns the normal and tangential relative velocities of all contacts if the grains have the velocities `bodies`,
+/// m/s.
 pub(super) fn velocities<'a, M: Model>(
     problem: &'a StepProblem<M>,
     bodies: &'a [M::Body<f64>],

@@ -108,8 +108,8 @@ fn restitute<M: Model>(
     });
 }
 
-/// Calls `change` for every row with its contact and its relative velocities (m/s). `change` returns impulses divided
-/// by the effective mass (m/s), which then change the velocities of the two bodies.
+/// Calls `change` for every contact with its relative velocities (m/s). `change` returns impulses divided by the
+/// effective mass (m/s), which then change the velocities of the two bodies.
 #[inline(always)]
 fn update<M: Model>(
     problem: &mut StepProblem<M>,
@@ -162,9 +162,9 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 /// break.
 struct Softness {
     substep_secs: f64,
-    /// ω/a, 1/s: the speed with which the spring closes an overlap, divided by the overlap.
+    /// Rate at which a spring closes an overlap, 1/s: closing speed divided by overlap (ω/a above).
     rate: f64,
-    /// Softness c = 1/(1 + hωa) of a contact, dimensionless; 0 would be rigid.
+    /// Softness c of a contact (formula above), dimensionless: 0 for a rigid contact, near 1 for a soft contact.
     compliance: f64,
     /// Largest speed with which an overlap is pushed out, m/s.
     push_out_speed: f64,

@@ -135,7 +135,7 @@ struct ShockPair {
     /// Gap along n at the beginning of the step, m. After a meeting: the value with which the gap is 0 at the time of
     /// the meeting.
     gap: f64,
-    /// Change of the gap by the offsets of the two grains, m.
+    /// Change of the gap because shocks have changed the paths of the two grains, m.
     shift: f64,
     /// Normal velocity v_n of the pair, relative to the wall if the other body is a moving wall, m/s.
     speed: f64,
@@ -165,12 +165,13 @@ enum Touch {
 /// Next impact of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NextImpact {
-    /// Not known: not searched for yet, or the velocities of the two bodies have changed since the search.
+    /// The next impact is not known: it was not searched for yet, or the velocities of the two bodies have changed
+    /// since.
     Unknown,
     Never,
     /// The pair touches, and closes from this time on, s.
     Closes(f64),
-    /// The pair has a gap, and meets at the time `secs` (s) with the normal `normal`.
+    /// The pair has a gap that closes: it meets at the time `secs` (s) with the normal `normal`.
     Meets {
         secs: f64,
         normal: DVec2,
@@ -190,9 +191,10 @@ enum Role {
 /// State of a grain during the shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockBody {
-    /// Offset −Σ t Δv of the grain's path, m: one entry per degree of freedom.
+    /// Offset −Σ t Δv of the grain's path by its shocks, each a change of velocity Δv at a time t, m. One entry per
+    /// degree of freedom.
     offset: [f64; 3],
-    /// Change of the offset in the last pass, m.
+    /// Change of this grain's path offset in the last pass, m.
     shift: DVec2,
     /// Time of the grain's last shock, s.
     since: f64,
@@ -200,7 +202,7 @@ struct ShockBody {
     next: f64,
     struck_in_step: bool,
     struck_in_pass: bool,
-    /// Change of velocity by gravity in the whole step, m/s.
+    /// Change of the grain's velocity by gravity in the whole step, m/s.
     gain: [f64; 3],
     /// True if the grain rests on a body or is bonded, and so does not fall freely.
     is_supported: bool,
@@ -248,8 +250,8 @@ fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<u
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
-/// Returns the norm of the impulses that would stop all free velocities, ‖m_n (v_n^free + term of the law)‖, N·s. It is
-/// the scale of the problem's residual.
+/// Returns the scale of a problem's residual: the norm ‖m_n (v_n^free + term)‖ of the normal impulses that would stop
+/// the free velocities, N·s. `term` is the term that the contact law adds to v_n.
 fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {

@@ -83,7 +83,7 @@ impl Shocks {
         part.bodies.mean_mass = problem.bodies.mean_mass;
         part.law = problem.law.with_capture_speed(0.0);
         part.hold_errors_against(problem);
-        // The friction bounds in `part` belong to the rows of earlier shocks.
+        // Drop the friction bounds in `part`, which belong to the rows of earlier shocks.
         part.forget_bounds();
         true
     }
