@@ -15,7 +15,7 @@ use super::problem::{StepProblem, measure, residual};
 use super::settings::SolverSettings;
 use super::solve::solve;
 
-/// Maximum number of sweeps that Newton's method performs between its factorisations, at the end of each search.
+/// Maximum number of sweeps of the solve by Newton's method that ends each search.
 const NEWTON_STEPS: u32 = 400;
 
 /// Maximum number of contacts of a problem on which a search ends with Newton's method.

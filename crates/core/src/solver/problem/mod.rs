@@ -351,8 +351,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sorts by colours the rows of a problem that [`StepProblem::prepare`] has not set up, for the method that needs
-    /// colours.
+    /// Sorts by colours the rows of a problem that [`StepProblem::prepare`] has not set up, for the method
+    /// `nsgs-parallel`.
     pub fn sort_by_colours(&mut self) {
         let Self { rows, order, bodies, .. } = self;
         let contact = |row: &Row<M>, other: u32| Contact {

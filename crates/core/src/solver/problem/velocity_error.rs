@@ -201,7 +201,7 @@ impl ErrorSums {
     }
 
     /// Returns the velocity error, m/s: the larger of √S (S is the duality gap) divided by the root of the mass, and of
-    /// f, the motion that ends all shortfalls. Returns NaN if S is NaN.
+    /// the speed f of the motion that ends all shortfalls. Returns NaN if S is NaN.
     pub(super) fn error<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         // A gap S within the rounding of the impulses counts as 0.
         let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;
