@@ -55,8 +55,8 @@ pub(super) fn guess_rolling<M: Model>(
     Guess::new(shifted, trial, rolling.bound(law, shifted))
 }
 
-/// The rolling moment of a contact in a Newton step: its resistance, its rolling velocity v_r (`speed`, m/s), its
-/// predicted state, and the regularisation ε (`compliance`).
+/// Data of a contact's rolling moment in a Newton step: its law and impulse (`rolling`), the rolling velocity v_r
+/// (`speed`, m/s), the predicted state (`guess`), and the regularisation ε of the step (`compliance`).
 pub(super) struct RollingTerms<'a> {
     pub rolling: &'a Rolling,
     pub speed: f64,

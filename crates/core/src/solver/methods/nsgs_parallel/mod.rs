@@ -281,9 +281,9 @@ struct TileLayout {
 }
 
 impl TileLayout {
-    /// Calls `visit` for the blocks and slots of all tiles, on several threads if `threads` is set, and then for the
-    /// blocks between tiles. Stores the results of the tiles in `results` and returns the result of the blocks between
-    /// tiles.
+    /// Calls `visit` for each tile, with its blocks (four contacts each) and slots (velocities of bodies), on several
+    /// threads if `threads` is set. Then calls `visit` for the blocks between tiles. Stores the results of the tiles in
+    /// `results` and returns the result of the blocks between tiles.
     fn visit<T: Send>(
         &mut self,
         threads: bool,
