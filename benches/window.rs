@@ -274,7 +274,7 @@ fn steps() {
             if window.newest_step() >= STEPS {
                 break;
             }
-            // Like the event loop of a window, draws a frame when there is a new one, but not too often.
+            // Like the event loop of a window, draws a frame when there is a new frame, but not too often.
             if news && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
                 drawn = Instant::now();
                 window.draw();

@@ -3,9 +3,9 @@
 /// Settings of a game engine.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// Simulated time of one call, s.
+    /// Simulated time that one call of `step` advances, s.
     pub time_step_secs: f64,
-    /// Number of substeps of one call.
+    /// Number of substeps in one call of `step`.
     pub substeps: u32,
     /// Stiffness of contacts as a frequency, Hz. Engines lower this frequency if a substep is too long for it.
     pub contact_hertz: f32,

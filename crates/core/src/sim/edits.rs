@@ -85,8 +85,9 @@ impl Simulation {
     /// position of a grain do not count as passed through.
     ///
     /// # Errors
-    /// The error says why `positions` are not valid: their number differs from the number of grains, or a position is
-    /// not possible in this world. The simulation is then unchanged.
+    /// The error says why `positions` are not valid: their number differs from the number of grains, a position is not
+    /// finite, a position changes along y in a scene with one axis, or a grain is too close to another disc. The
+    /// simulation is then unchanged.
     pub fn set_positions(&mut self, positions: &[DVec2]) -> Result<()> {
         let mut world = self.state.world.clone();
         self.replace("positions", &mut world.grains.positions, positions)?;

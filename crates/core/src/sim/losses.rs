@@ -21,8 +21,8 @@ const ROOM_IN_SIDES: f64 = 3.0;
 /// outside the scene.
 const LOST_DEPTH: f64 = 1.0;
 /// Length of the path of a grain at which the path is examined, in radii of the grain. A longer path around the end of
-/// a wall might cut the wall. With a shorter length, paths are examined more often; then every step costs as much as a
-/// step of a collapse.
+/// a wall might cut the wall. With a shorter length, paths are examined more often, and every step costs as much as a
+/// step of a collapse, in which grains move fast.
 const WAY_IN_RADII: f64 = 0.25;
 
 /// Data to find the lost grains of a world: the path of each grain since its last examination, and the world's edges.

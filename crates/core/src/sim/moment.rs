@@ -147,7 +147,7 @@ words! {
 }
 
 impl Simulation {
-    /// Returns the full state at this moment.
+    /// Returns the full present state.
     pub fn moment(&self) -> Moment {
         let State { world, candidates, contacts, .. } = &self.state;
         let laws = Laws::of(self);

@@ -28,7 +28,7 @@ use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
 /// Number of solutions of a step after which the bounds of bonds no longer change. By then only few bonds still need a
-/// lower bound, and the next step examines them again.
+/// smaller bound, and the next step examines them again.
 const MOST_ROUNDS: u32 = 8;
 
 /// Fraction of its strength at which a bond that would break counts as restless.
@@ -96,7 +96,7 @@ pub(super) fn solve_range<M: Model>(
 
 /// Opening of a bond in a step or, if a shock closed the bond, in the rest of the step after that shock.
 struct BondOpening {
-    /// Length of the considered time divided by the step length.
+    /// Fraction of the step that this opening covers: 1, or less if a shock closed the bond within the step.
     part: f64,
     /// True if a shock closed the bond in this step.
     is_closed: bool,

@@ -65,7 +65,7 @@ fn travel(state: &State, time_step_secs: f64) -> f64 {
     (state.fastest() + 2.0 * state.largest_acceleration() * time_step_secs) * time_step_secs
 }
 
-/// Decision how a step is divided into substeps.
+/// Decision on how a step is divided into substeps.
 struct StepCut {
     substeps: u32,
     /// True if bonded pairs circle so fast that an undivided step would separate them.

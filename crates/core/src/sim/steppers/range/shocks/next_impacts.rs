@@ -134,8 +134,8 @@ impl Shocks {
         Some(NextImpact::Meets { secs, normal })
     }
 
-    /// Finds the exact time at which a pair closes. Only for pairs that touch within the tolerance and are struck
-    /// alone.
+    /// Finds the exact time at which a pair closes that touches within the tolerance. Only for pairs that are struck
+    /// alone, that is without a common grain with another pair.
     pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
         for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);
