@@ -98,7 +98,7 @@ fn near(world: &World, i: u32, j: u32, skin: f64) -> bool {
     grains.positions[i].distance(grains.positions[j]) < grains.radii[i] + grains.radii[j] + skin
 }
 
-/// Lists the pairs of a tree by traversing the tree against itself, sorted.
+/// Fills `pairs` with the sorted candidate pairs that are found by traversing the tree against itself.
 fn walk(
     tree: &Bvh,
     workspace: &mut BvhWorkspace,

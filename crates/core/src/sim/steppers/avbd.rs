@@ -125,7 +125,7 @@ struct BlockDescent {
     margin: f64,
     /// Dimensionless stiffnesses (κ_n, κ_t) of each contact along normal and tangent.
     stiffness: Vec<[f64; 2]>,
-    /// Sides of all contacts, sorted by body.
+    /// The sides of all contacts, sorted by the body on which they act.
     sides: Vec<Side>,
     /// For each body: the end of the body's range in `sides`.
     side_ends: Vec<usize>,

@@ -80,8 +80,7 @@ impl<M: Model> Substepping<M> {
         StepResult { report, measures, ..self.works }
     }
 
-    /// Begins a substep: changes the velocities of the grains by gravity, body forces and the spring with which the
-    /// user pulls.
+    /// Begins a substep: changes the velocities of the grains by gravity, body forces and the user's spring on a grain.
     pub(super) fn begin(&mut self, stage: &mut Stage<'_, M>) {
         let pushes = stage.state.pushes(M::AXES, self.substep_secs);
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);

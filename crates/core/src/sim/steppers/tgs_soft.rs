@@ -150,10 +150,10 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 
 /// Constants of soft contacts that are the same for all contacts of a step.
 ///
-/// **Softness.** At the gap s the spring's force is −k s − γ ṡ, with ω² = k/m_ij and ζ = γ/(2 m_ij ω). If the force is
-/// evaluated at the end of the substep, with s + h v and the normal velocity v, its impulse divided by m_ij is σ =
-/// −h(ω²(s + h v) + 2ζω v). With a = 2ζ + hω this is σ = −hωa (v + s ω/a). A Gauss–Seidel update requires the same for
-/// the new velocity v + Δσ:
+/// **Softness.** At the gap s the spring's force is −k s − γ ṡ (stiffness k, damping γ), with ω² = k/m_ij and ζ = γ/(2
+/// m_ij ω). The force is evaluated at the end of a substep of length h, with s + h v and the normal velocity v. Then
+/// its impulse divided by m_ij is σ = −h(ω²(s + h v) + 2ζω v). With a = 2ζ + hω this is σ = −hωa (v + s ω/a). A
+/// Gauss–Seidel update requires the same for the new velocity v + Δσ:
 ///
 /// > Δσ = −(1 − c)(v + s ω/a) − c σ,  c = 1/(1 + hωa).
 ///
@@ -267,8 +267,8 @@ impl Touching {
     }
 }
 
-/// Returns the driven walls at the beginning of a substep, and sets the responses of their contacts. A substep of
-/// length 0 is an impact.
+/// Returns the driven walls at the beginning of a substep, and sets `answers`, the changes of velocity per unit
+/// impulse, of their contacts. A substep of length 0 is an impact.
 fn begin_walls<M: Model>(
     stage: &Stage<'_, M>,
     contacts: &mut [Touching],
