@@ -117,7 +117,7 @@ pub(super) fn advance<M: Model>(
     if whole_first {
         match try_step(stage, settings, memory, substeps == 1) {
             Ok(result) => return result,
-            // Of a rejected step only the sweeps of its solves count.
+            // A rejected step contributes only the sweeps of its solves to the result.
             Err(given_up) => result.report = result.report.after(given_up),
         }
     }
