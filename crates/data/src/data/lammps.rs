@@ -218,7 +218,8 @@ fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
 
 /// The text of a frame in a dump.
 struct FrameText {
-    /// Text ahead of the first frame of a file: units, and facts about the run. Readers skip unknown items only there.
+    /// Text ahead of the first frame of a file: units, and facts about the run. Readers skip unknown items only ahead
+    /// of the first frame.
     pub front: String,
     /// Text of the frame from its first line to the names of the columns.
     pub head: String,

@@ -74,7 +74,8 @@ impl GrowingFile {
         while !rows.is_empty() {
             let (now, later) = rows.split_at(self.uncut(rows));
             if let Err(error) = self.file.write_all(now) {
-                // A part of a row may have been written and is cut off. A pipe ignores this.
+                // A part of a row may have been written and is cut off. A pipe cannot be shortened, so this result is
+                // ignored.
                 let _ = self.file.set_len(self.whole);
                 return Err(error);
             }

@@ -183,7 +183,7 @@ pub fn heed_signals() {
 /// Makes a write fail if the file exceeds the system's size limit. Otherwise a signal would end the program.
 #[cfg(unix)]
 pub fn ignore_file_size_signal() {
-    // SAFETY: no handler is installed, and none runs.
+    // SAFETY: this call installs no signal handler, so no handler runs.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
 }
 

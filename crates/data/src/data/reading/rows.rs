@@ -31,7 +31,7 @@ pub struct RecordedGrains {
     pub grains: Vec<Grain>,
     /// Discs that do not move, sorted by their ids if they have ids.
     pub fixed_discs: Vec<Disc>,
-    /// Name of the material of each fixed disc, if the file gives one.
+    /// Name of the material of each fixed disc; `None` if the file names no material.
     pub disc_materials: Vec<Option<String>>,
 }
 

@@ -36,7 +36,7 @@ pub(super) struct VtkFolder {
     kinds: &'static [VtkKind],
 }
 
-/// One kind of file in a folder of VTK files. There is one such file per frame.
+/// One kind of file in a folder of VTK files. Each frame has one file of this kind.
 struct VtkKind {
     /// Beginning of the names of these files.
     name: &'static str,
